@@ -12,6 +12,9 @@ WORLDS = [
     ("hospital ward with 8 patient rooms, for a delivery robot", ["shift_change", "morning_round", "night"]),
     ("office for 16 people with a reception, for a delivery robot", ["opening", "lunch", "day"]),
     ("two-bedroom flat for a couple", ["day", "evening", "night"]),
+    ("airport terminal", ["boarding", "busy", "night"]),
+    ("primary school with 4 classrooms and a canteen", ["school_break", "lunch", "opening"]),
+    ("restaurant with 40 seats", ["lunch", "busy", "evening"]),
 ]
 SECONDS = "300"
 

@@ -48,6 +48,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "pipeline",
             "plans",
             "export",
+            "crowd",
             "research",
             "proto",
         ],

@@ -68,6 +68,13 @@ pub enum State {
     Gone,
 }
 
+/// Where somebody stood before it made way, and until when it is to stand there.
+#[derive(Debug, Clone)]
+pub struct Stand {
+    pub at: Point,
+    pub until: f64,
+}
+
 /// A place that was gone to.
 struct Reached {
     at: Point,
@@ -98,6 +105,8 @@ pub struct Mover {
     pub velocity: Point,
     pub legs: Vec<Leg>,
     pub corner: usize,
+    /// Corners up to which its way leads around somebody.
+    pub careful: usize,
     /// Station that is taken, and the target of the way.
     pub station: Option<usize>,
     pub target: Point,
@@ -109,9 +118,14 @@ pub struct Mover {
     pub done: Vec<usize>,
     pub missed: u32,
     /// Where it stood, and until when, before it made way.
-    pub resumes: Option<(Point, f64)>,
+    pub resumes: Option<Stand>,
+    /// Where it was when it made way last.
+    pub met: Point,
     /// The task at hand is given up.
     pub skips: bool,
+    /// It stands aside until a line has a place left, and how often it looked.
+    pub waits: bool,
+    pub waited: u32,
     reached: Vec<Reached>,
     pub pauses: Vec<Pause>,
     samples: Vec<Sample>,
@@ -139,6 +153,7 @@ impl Mover {
             velocity: Point::new(0.0, 0.0),
             legs: Vec::new(),
             corner: 0,
+            careful: 0,
             station: None,
             target: at,
             left: f64::MAX,
@@ -147,7 +162,10 @@ impl Mover {
             done: Vec::new(),
             missed: 0,
             resumes: None,
+            met: at,
             skips: false,
+            waits: false,
+            waited: 0,
             reached: Vec::new(),
             pauses: Vec::new(),
             samples: Vec::new(),
@@ -195,6 +213,12 @@ impl Mover {
         }
     }
 
+    /// Returns where it was noted to be.
+    #[cfg(test)]
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
     /// Notes that it got to where it wanted.
     pub fn reach(&mut self, at: Point, radius: f64) {
         self.reached.push(Reached { at, level: self.level, radius, left: None });
@@ -207,7 +231,20 @@ impl Mover {
         }
     }
 
+    /// Returns true while it stands on purpose.
+    pub fn is_paused(&self) -> bool {
+        self.pauses.last().is_some_and(|p| p.to == f64::MAX)
+    }
+
+    /// Returns the share of its time that it stood on purpose, seats and beds left out.
+    pub fn paused_share(&self, t: f64) -> f64 {
+        let stood = self.pauses.iter().filter(|p| !matches!(p.kind, "seat" | "bed"));
+        let since = self.samples.first().map_or(t, |s| s.t);
+        stood.map(|p| p.to.min(t) - p.from).sum::<f64>() / (t - since).max(1.0)
+    }
+
     pub fn begin_pause(&mut self, t: f64, kind: &'static str) {
+        self.end_pause(t);
         self.pauses.push(Pause { from: (t * 1000.0).round() / 1000.0, to: f64::MAX, kind });
     }
 

@@ -20,6 +20,8 @@ pub const LIFT_S: f64 = 12.0;
 const M_PER_S: f64 = 1.2;
 /// Distance of those who stand in a lift or on a landing, m.
 const RIDERS_APART_M: f64 = 0.5;
+/// Room around a place that any robot stands on, m.
+const WIDE_M: f64 = 0.45;
 /// Most who do.
 const MOST_RIDERS: usize = 6;
 
@@ -81,14 +83,16 @@ pub fn links(spaces: &[Space], plan: &Floorplan) -> Vec<Link> {
     plan.links.iter().map(link).collect()
 }
 
-/// Returns where people stand in a stairwell or lift: on floor that one gets to from its door, the farthest from it first.
+/// Returns where people and robots stand in a stairwell or lift: on floor that one gets to from its door, where there is most
+/// room first, and of that the farthest from the door.
 fn slots(space: &Space, room: usize) -> Vec<Point> {
     let Some(door) = space.doors.iter().find(|d| d.rooms.contains(&room)) else { return Vec::new() };
     let radius = d3dgen_model::scenario::PERSON_RADIUS_M;
     let from = space.node(door.middle);
     let (field, _) = search(space, from, radius, |n| space.belongs(n, room), |_| false, f64::MAX);
     let mut all: Vec<(f64, usize)> = field.all().filter(|(_, n)| usize::from(space.zone(*n)) == room).collect();
-    all.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let wide = |n: usize| space.clear(n) >= WIDE_M;
+    all.sort_by(|a, b| wide(b.1).cmp(&wide(a.1)).then(b.0.total_cmp(&a.0)).then(a.1.cmp(&b.1)));
     let mut out: Vec<Point> = Vec::new();
     for (_, n) in all {
         let p = space.point(n);
@@ -108,8 +112,10 @@ impl Router {
         }
         for (k, link) in links.iter().enumerate() {
             for (s, (level, slots)) in link.stops.iter().enumerate() {
-                let rooms = spaces[*level].room_at(slots[0]).into_iter().collect();
-                portals.push(Portal { level: *level, at: slots[0], rooms, stop: Some((k, s)) });
+                let space = &spaces[*level];
+                let Some(at) = slots.iter().copied().find(|p| space.clear(space.node(*p)) >= radius) else { continue };
+                let rooms = space.room_at(at).into_iter().collect();
+                portals.push(Portal { level: *level, at, rooms, stop: Some((k, s)) });
             }
         }
         let mut of_room: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();

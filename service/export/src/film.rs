@@ -205,10 +205,13 @@ fn plan(svg: &mut String, world: &World, frame: &Frame) {
     }
     let font = Font::new(Weight::Regular);
     for room in &plan.rooms {
-        let b = room.net_polygon.bounds();
+        // at the corner that is farthest up, and there farthest to the left: the names of others stand at theirs
+        let corners = room.net_polygon.corners();
+        let Some(at) = corners.iter().max_by(|a, b| a.y.total_cmp(&b.y).then(b.x.total_cmp(&a.x))) else { continue };
+        let top = corners.iter().filter(|p| (p.y - at.y).abs() < 1e-6).map(|p| p.x).fold(at.x, f64::max);
         let width = font.width(&room.name, 9.0);
-        if width < b.width() * frame.scale - 4.0 && b.height() * frame.scale > 22.0 {
-            let (x, y) = frame.map(Point::new(b.x0, b.y1));
+        if width < (top - at.x) * frame.scale - 4.0 && room.net_polygon.bounds().height() * frame.scale > 22.0 {
+            let (x, y) = frame.map(*at);
             text_in(svg, &font, &room.name, (x + 3.0, y + 11.0), 9.0, "#8a8f98");
         }
     }

@@ -295,7 +295,8 @@ impl Scenario {
             }
         }
         for (i, flow) in self.flows.iter().enumerate() {
-            if !(flow.per_min.is_finite() && flow.per_min >= 0.0) || !(1..=flow.group[1]).contains(&flow.group[0]) {
+            let comes = flow.per_min.is_finite() && flow.per_min >= 0.0;
+            if !comes || !(1..=flow.group[1]).contains(&flow.group[0]) {
                 let message = "needs per_min from 0 and a group of 1 or more, the fewest first";
                 problems.push(Problem::new(format!("/flows/{i}"), message));
             }

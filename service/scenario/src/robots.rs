@@ -200,13 +200,14 @@ fn of_trade<'p>(floor: &Floor, robot: &Robot, pois: &'p [Poi]) -> Vec<&'p Poi> {
     toured(floor, found, pois.iter().find(|p| p.kind == Poi::DOCK))
 }
 
-/// Returns the part of a tour that one of several equal robots visits; all where there are fewer points than robots. Each of those
-/// that bring things loads where the clean ones are.
+/// Returns the part of a tour that one of several equal robots visits; all where there are too few points for them: one that brings
+/// things needs two. Each of those loads where the clean ones are.
 fn share<'p>(floor: &Floor, all: &[&'p Poi], robot: &Robot, number: usize) -> Vec<&'p Poi> {
     let loads = |p: &&&'p Poi| floor.goods(&p.room_id) == Goods::Clean && brings(&robot.kind);
     let (mut own, rest): (Vec<&'p Poi>, Vec<&'p Poi>) = all.iter().partition(loads);
     let robots = robot.count as usize;
-    match rest.len() < robots {
+    let least = if brings(&robot.kind) && own.is_empty() { 2 } else { 1 };
+    match rest.len() < least * robots {
         true => own.extend(rest),
         false => own.extend(&rest[number * rest.len() / robots..(number + 1) * rest.len() / robots]),
     }

@@ -8,7 +8,7 @@ use d3dgen_model::occupancy::{Bitmap, Occupancy};
 use d3dgen_model::offer::seats_across;
 use d3dgen_model::placements::{Placement, Placements};
 use d3dgen_model::scene_graph::SceneGraph;
-use d3dgen_model::{Point, Pose};
+use d3dgen_model::{Point, Pose, Segment};
 
 use super::facing;
 
@@ -125,16 +125,16 @@ impl<'a> Building<'a> {
         let door = doors().find(|d| d.entrance).or_else(|| doors().next())?;
         let room = self.rooms.iter().find(|r| door.room_ids.contains(&r.plan.room_id))?;
         let middle = door.line.middle();
-        let inside = ground.near(room.plan, middle, INSIDE_M + 1.0, INSIDE_M)?;
+        let inside = inside(&door.line, room.plan)?;
+        let inside = ground.near(room.plan, inside, INSIDE_M)?;
         let on = Point::new(2.0 * inside.x - middle.x, 2.0 * inside.y - middle.y);
         Some((door.door_id.as_str(), room.plan.room_id.as_str(), facing(inside, on)))
     }
 }
 
 impl Ground<'_> {
-    /// Returns the cell of a room that a person stands on nearest to a point, within some distance and not nearer than a least
-    /// one, m; ties go to the south-west.
-    pub fn near(&self, room: &PlanRoom, p: Point, within: f64, least: f64) -> Option<Point> {
+    /// Returns the cell of a room that a person stands on nearest to a point, within some distance, m; ties go to the south-west.
+    pub fn near(&self, room: &PlanRoom, p: Point, within: f64) -> Option<Point> {
         let around = d3dgen_model::Rect { x0: p.x - within, y0: p.y - within, x1: p.x + within, y1: p.y + within };
         let (i0, i1, j0, j1) = self.occupancy.frame.span(&around);
         let mut best: Option<(f64, Point)> = None;
@@ -145,7 +145,7 @@ impl Ground<'_> {
                 }
                 let at = self.occupancy.frame.center(i as usize, j as usize);
                 let off = at.distance(p);
-                let fits = off <= within && off >= least && best.is_none_or(|(known, _)| off < known - 1e-9);
+                let fits = off <= within && best.is_none_or(|(known, _)| off < known - 1e-9);
                 if fits && room.net_polygon.contains(at) {
                     best = Some((off, at));
                 }
@@ -153,6 +153,14 @@ impl Ground<'_> {
         }
         best.map(|(_, at)| at)
     }
+}
+
+/// Returns the point straight inside a door of a room.
+fn inside(line: &Segment, room: &PlanRoom) -> Option<Point> {
+    let (middle, length) = (line.middle(), line.length().max(1e-6));
+    let (nx, ny) = (-(line.end.y - line.start.y) / length * INSIDE_M, (line.end.x - line.start.x) / length * INSIDE_M);
+    let both = [Point::new(middle.x + nx, middle.y + ny), Point::new(middle.x - nx, middle.y - ny)];
+    both.into_iter().find(|p| room.net_polygon.contains(*p))
 }
 
 /// Returns where one stands in a room for a while: with ease and away from doors, else with ease, else at all.

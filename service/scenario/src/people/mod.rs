@@ -155,7 +155,11 @@ fn count(scene: &Scene, role: &Role, residents: u32) -> u32 {
         Counted::Posts => f64::from(rooms().map(|r| r.count("operate")).sum::<u32>()),
     };
     let full = ((all / number.each.max(0.01)).floor() as u32).clamp(number.least, number.most.max(number.least));
-    (f64::from(full) * scene.hour.share(role.kind)).round() as u32
+    let share = scene.hour.share(role.kind);
+    // whoever looks after somebody is never away altogether
+    let looks_after = role.rounds_at(&scene.hour.id).iter().flat_map(|r| &r.steps).any(|s| s.to_role.is_some());
+    let least = u32::from(looks_after && full > 0 && share > 0.0);
+    ((f64::from(full) * share).round() as u32).max(least)
 }
 
 /// Returns one person with the steps of its round; `None` where it finds no place to begin at.

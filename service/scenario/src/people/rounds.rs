@@ -12,6 +12,8 @@ use super::{facing, stations};
 
 /// Floor for each who stands in a room, m^2: more than that is a crowd (level of service B, Fruin 1971).
 const STANDING_M2: f64 = 3.0;
+/// How often the places of a line are taken by another one, of people who are there from the start: more would wait for ever.
+const TURNS: u32 = 3;
 /// Rooms of those that suit a step among which the seed chooses: the nearest.
 const NEAREST: usize = 3;
 /// Places of a room that are looked at for one away from others.
@@ -102,14 +104,29 @@ impl<'s, 'a> Writer<'s, 'a> {
                 out.extend(own.into_iter().map(|room| self.in_room(room, step, stream)));
                 continue;
             }
-            let again =
-                out.iter().find(|s| s.act == step.act && s.station.is_some() && self.suits(s, &step.at)).cloned();
-            let made = again.map(|s| Step { seconds: seconds(step, stream), ..s });
-            out.extend(
-                made.or_else(|| self.at_station(&rooms, step, stream)).or_else(|| self.somewhere(&rooms, step, stream)),
-            );
+            out.extend(self.at_one_of(&rooms, step, &out, stream));
         }
         out
+    }
+
+    /// Returns a step in the first of some rooms where there is something to do it at: a place that it has already, or one that is
+    /// free; where there is none, standing.
+    fn at_one_of(
+        &mut self,
+        rooms: &[(String, Vec<usize>)],
+        step: &RoundStep,
+        before: &[Step],
+        stream: &mut Stream,
+    ) -> Option<Step> {
+        for named in rooms {
+            let own = before.iter().find(|s| s.act == step.act && s.station.is_some() && self.suits(s, &named.0));
+            let again = own.map(|s| Step { seconds: seconds(step, stream), ..s.clone() });
+            let made = again.or_else(|| self.at_station(std::slice::from_ref(named), step, stream));
+            if made.is_some() {
+                return made;
+            }
+        }
+        self.somewhere(rooms, step, stream)
     }
 
     /// Returns the steps of people who come in: they take places that are free when they get there.
@@ -131,21 +148,31 @@ impl<'s, 'a> Writer<'s, 'a> {
                 continue;
             }
             let rooms = self.rooms(&step.at, allowed, None, (0, 1));
-            let with_place = rooms
-                .iter()
-                .flat_map(|(_, rooms)| rooms.iter().copied())
-                .find(|room| step.act.affordance().is_some() && !self.of_room(*room, step.act).is_empty());
-            let room = with_place.or_else(|| rooms.first().and_then(|(_, rooms)| stream.pick(rooms).copied()));
-            let Some(mut room) = room else { continue };
-            if with_place.is_some() && step.act != Act::Queue {
-                // all alike rooms are as good
-                let alike: Vec<usize> =
-                    rooms.iter().filter(|(_, rooms)| rooms.contains(&room)).flat_map(|(_, r)| r.clone()).collect();
-                room = stream.pick(&alike).copied().unwrap_or(room);
-            }
+            let room = match self.with_places(&rooms, step.act, stream) {
+                Some(room) => room,
+                None => match rooms.first().and_then(|(_, rooms)| stream.pick(rooms).copied()) {
+                    Some(room) => room,
+                    None => continue,
+                },
+            };
             out.push(self.in_room(room, step, stream));
         }
         out
+    }
+
+    /// Returns a room where an act has places: of a line the first one, of all else any, as often as it has places.
+    fn with_places(&mut self, rooms: &[(String, Vec<usize>)], act: Act, stream: &mut Stream) -> Option<usize> {
+        act.affordance()?;
+        let mut places: Vec<usize> = Vec::new();
+        let mut known: BTreeSet<usize> = BTreeSet::new();
+        for room in rooms.iter().flat_map(|(_, rooms)| rooms.iter().copied()) {
+            let count = if known.insert(room) { self.of_room(room, act).len() } else { 0 };
+            if act == Act::Queue && count > 0 {
+                return Some(room);
+            }
+            places.extend(std::iter::repeat_n(room, count));
+        }
+        stream.pick(&places).copied()
     }
 
     /// Returns the steps of a person of whom only the rooms are known that it walks between.
@@ -179,10 +206,10 @@ impl<'s, 'a> Writer<'s, 'a> {
         self.begun.push((self.building.level_of(&step.room_id), Point::new(step.pose.x, step.pose.y)));
     }
 
-    /// Returns true for a step in a room that names mean.
-    fn suits(&self, step: &Step, names: &[String]) -> bool {
+    /// Returns true for a step in a room that a name means.
+    fn suits(&self, step: &Step, name: &str) -> bool {
         let room = self.building.rooms.iter().find(|r| r.plan.room_id == step.room_id);
-        room.is_some_and(|r| names.iter().any(|name| is_named(name, r.kind, &r.tags)))
+        room.is_some_and(|r| is_named(name, r.kind, &r.tags))
     }
 
     /// Returns the rooms that each of some names means, the nearest first; names that mean none are left out.
@@ -272,8 +299,17 @@ impl<'s, 'a> Writer<'s, 'a> {
 
     /// Returns the step in one of the nearest rooms that suit.
     fn somewhere(&mut self, rooms: &[(String, Vec<usize>)], step: &RoundStep, stream: &mut Stream) -> Option<Step> {
+        let mut lines: BTreeMap<usize, u32> = BTreeMap::new();
+        if step.act == Act::Queue {
+            for room in rooms.iter().flat_map(|(_, rooms)| rooms.iter().copied()) {
+                let places = self.of_room(room, Act::Queue).iter().map(|s| 1 + s.queue.len() as u32);
+                lines.insert(room, places.sum::<u32>());
+            }
+        }
         let has_floor = |room: &usize| {
-            let most = (self.building.rooms[*room].plan.net_area_m2 / STANDING_M2).max(1.0) as u32;
+            let floor = (self.building.rooms[*room].plan.net_area_m2 / STANDING_M2).max(1.0) as u32;
+            let line = lines.get(room).copied().filter(|places| *places > 0);
+            let most = line.map_or(floor, |places| TURNS * places.min(floor));
             self.crowd.get(room).is_none_or(|n| *n < most)
         };
         let with_floor =
@@ -281,6 +317,9 @@ impl<'s, 'a> Writer<'s, 'a> {
         // where all are full, nobody goes
         let near = rooms.iter().map(|(_, rooms)| with_floor(rooms)).find(|near| !near.is_empty())?;
         let room = *stream.pick(&near)?;
+        if lines.get(&room).is_some_and(|places| *places > 0) {
+            *self.crowd.entry(room).or_default() += 1;
+        }
         Some(self.in_room(room, step, stream))
     }
 

@@ -17,8 +17,10 @@ const OFF_M: f64 = 0.4;
 const SEAT_M: f64 = 0.6;
 /// From one of those who wait in turn to the next, m: with the room that strangers leave (0.6 to 0.8 m, Fruin 1971).
 const QUEUE_STEP_M: f64 = 0.75;
+/// Floor of a room for each who waits in it, m^2: those who go past them need as much as they.
+const WAITING_M2: f64 = 2.0;
 /// Most who wait in one queue.
-const MOST_IN_QUEUE: usize = 6;
+const MOST_IN_QUEUE: usize = 10;
 
 /// Returns all places of a room where an act is done.
 pub(super) fn of_room(ground: &Ground, room: &Room, act: Act) -> Vec<Station> {
@@ -29,7 +31,29 @@ pub(super) fn of_room(ground: &Ground, room: &Room, act: Act) -> Vec<Station> {
         let wet = matches!(o.shape, Shape::Toilet | Shape::Cubicle | Shape::Bathtub | Shape::Shower);
         served && seat && !wet && p.support.is_none() && o.affordances.iter().any(|a| a == affordance)
     };
-    room.objects.iter().filter(fits).flat_map(|(p, o)| of_object(ground, room, (p, o), act)).collect()
+    let mut all: Vec<Station> =
+        room.objects.iter().filter(fits).flat_map(|(p, o)| of_object(ground, room, (p, o), act)).collect();
+    if act == Act::Queue {
+        add_lines(ground, room, &mut all);
+    }
+    all
+}
+
+/// Adds the lines before the counters of a room: beside each other, and together no longer than its floor holds.
+fn add_lines(ground: &Ground, room: &Room, counters: &mut [Station]) {
+    let point = |pose: &Pose| Point::new(pose.x, pose.y);
+    let mut taken: Vec<Point> = counters.iter().map(|s| point(&s.before)).collect();
+    let most = ((room.plan.net_area_m2 / WAITING_M2) as usize / counters.len().max(1)).min(MOST_IN_QUEUE);
+    for counter in counters {
+        let (before, object) = (point(&counter.before), middle_of(room, &counter.placement_id));
+        counter.queue = queue(ground, room, (before, object), &taken, most);
+        taken.extend(&counter.queue);
+    }
+}
+
+fn middle_of(room: &Room, placement_id: &str) -> Point {
+    let found = room.objects.iter().find(|(p, _)| p.placement_id == placement_id);
+    found.map_or(room.plan.net_polygon.bounds().center(), |(p, _)| Point::new(p.pose.x, p.pose.y))
 }
 
 fn of_object(ground: &Ground, room: &Room, (p, o): (&Placement, &ObjectType), act: Act) -> Vec<Station> {
@@ -38,17 +62,16 @@ fn of_object(ground: &Ground, room: &Room, (p, o): (&Placement, &ObjectType), ac
         let middle = seat(p, k, count);
         let before = sides(act, o.shape).iter().find_map(|&side| {
             let wanted = beside(p, middle, side, STANDING_M + GAP_M);
-            ground.near(room.plan, wanted, OFF_M, 0.0)
+            ground.near(room.plan, wanted, OFF_M)
         })?;
         let pose = facing(before, middle);
         let at = match act {
             Act::Sit | Act::Lie => Pose { z: 0.0, ..Pose { yaw_rad: p.pose.yaw_rad, ..facing(middle, middle) } },
             _ => pose,
         };
-        let queue = if act == Act::Queue { queue(ground, room, before, middle) } else { Vec::new() };
         let station_id = format!("{}_{}_{}", p.placement_id, act.name(), k + 1);
         let (room_id, placement_id) = (room.plan.room_id.clone(), p.placement_id.clone());
-        Some(Station { station_id, room_id, placement_id, act, before: pose, at, queue })
+        Some(Station { station_id, room_id, placement_id, act, before: pose, at, queue: Vec::new() })
     };
     (0..count).filter_map(station).collect()
 }
@@ -90,22 +113,22 @@ fn beside(p: &Placement, middle: Point, side: u8, distance: f64) -> Point {
         _ => (0.0, -width / 2.0 - distance),
     };
     // to the sides one leaves from the middle of the object
-    let from = if side % 2 == 0 { middle } else { Point::new(p.pose.x, p.pose.y) };
+    let from = if side.is_multiple_of(2) { middle } else { Point::new(p.pose.x, p.pose.y) };
     Point::new(from.x + cos * forward - sin * left, from.y + sin * forward + cos * left)
 }
 
-/// Returns where those stand who wait for a place: in a line away from it, that turns where there is no floor.
-fn queue(ground: &Ground, room: &Room, before: Point, object: Point) -> Vec<Point> {
+/// Returns where those stand who wait for a place: in a line away from it, off others, that turns where there is no floor.
+fn queue(ground: &Ground, room: &Room, (before, object): (Point, Point), taken: &[Point], most: usize) -> Vec<Point> {
     let far = before.distance(object).max(0.01);
     let (mut dx, mut dy) = ((before.x - object.x) / far, (before.y - object.y) / far);
     let mut out: Vec<Point> = Vec::new();
     let mut last = before;
-    while out.len() < MOST_IN_QUEUE {
+    while out.len() < most {
         let turned = [(dx, dy), (-dy, dx), (dy, -dx)];
         let next = turned.into_iter().find_map(|(x, y)| {
             let wanted = Point::new(last.x + x * QUEUE_STEP_M, last.y + y * QUEUE_STEP_M);
-            let at = ground.near(room.plan, wanted, 0.1, 0.0)?;
-            let apart = std::iter::once(&before).chain(&out).all(|p| p.distance(at) > QUEUE_STEP_M - 0.15);
+            let at = ground.near(room.plan, wanted, 0.1)?;
+            let apart = taken.iter().chain(&out).all(|p| p.distance(at) > QUEUE_STEP_M - 0.15);
             apart.then_some((at, (x, y)))
         });
         let Some((at, way)) = next else { break };

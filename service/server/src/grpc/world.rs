@@ -4,10 +4,13 @@ mod edit;
 pub(in crate::grpc) mod export;
 mod generate;
 mod import;
+mod simulate;
 
+use d3dgen_crowd::Options;
 use d3dgen_model::Document;
 use d3dgen_model::brief::Brief;
 use d3dgen_model::floorplan::Floorplan;
+use d3dgen_model::hours;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::report::Report;
 use d3dgen_model::robot_body::RobotBody;
@@ -16,6 +19,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::style::{Clutter, Style};
 use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::{attempt_seed, retrieve, world_name};
+use d3dgen_pipeline::scenario::Wishes;
 use d3dgen_pipeline::scene_graph::Request as Asked;
 use d3dgen_pipeline::{brief, floorplan, placement, scenario, variations, world};
 use d3dgen_plugins::Plugin;
@@ -28,6 +32,7 @@ use d3dgen_proto::v1::{
     GenerateScenarioResponse, GenerateSceneGraphRequest, GenerateSceneGraphResponse, GenerateWorldRequest,
     GetBatchWorldRequest, GetBatchWorldResponse, ImportFloorplanRequest, ImportFloorplanResponse,
     ListBatchWorldsRequest, ListBatchWorldsResponse, ListExportersRequest, ListExportersResponse, RankedFloorplan,
+    SimulateWorldRequest, SimulateWorldResponse,
 };
 use tonic::{Request, Response, Status};
 
@@ -134,7 +139,12 @@ impl WorldService for Api {
             let placements: Placements = document("placements", asked.placements)?;
             let now = core.domains.now();
             let plugin = plugin(&now, "scene_graph.domain", &graph.domain)?;
-            let made = scenario::generate(&graph, &plan, &placements, plugin.domain());
+            if let Some(hour) = asked.hour.as_ref().filter(|h| hours::get(h).is_none()) {
+                return Err(invalid("hour", format!("`{hour}` is no hour; there are {}", hours::ids().join(", "))));
+            }
+            let brief = brief::of_plan(&graph.prompt, Some(&plan), &now.registry);
+            let wishes = Wishes { name: &asked.name, hour: asked.hour.as_deref(), brief: brief.as_ref() };
+            let made = scenario::generate_as(&graph, &plan, &placements, plugin.domain(), &wishes);
             let scenario = made.map_err(|e| status::stage("placements", e))?;
             Ok(GenerateScenarioResponse { scenario: Some(message(&scenario)) })
         })
@@ -259,6 +269,19 @@ impl WorldService for Api {
             files.push(("report.json".into(), found.to_json().into_bytes()));
             files.push(("world.json".into(), world.to_json().into_bytes()));
             export::archive(files, stop, |chunk| ExportWorldResponse { chunk })
+        })
+        .await
+    }
+
+    type SimulateWorldStream = export::Pieces<SimulateWorldResponse>;
+
+    async fn simulate_world(&self, request: Request<SimulateWorldRequest>) -> Answer<Self::SimulateWorldStream> {
+        let asked = request.into_inner();
+        self.work(move |core, stop| {
+            let world: World = document("world", asked.world)?;
+            let options = Options { seconds: asked.seconds.unwrap_or(simulate::USUAL_S), seed: asked.seed };
+            let files = simulate::files(core, &world, options, asked.film, stop)?;
+            export::archive(files, stop, |chunk| SimulateWorldResponse { chunk })
         })
         .await
     }

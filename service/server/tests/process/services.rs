@@ -12,7 +12,8 @@ use d3dgen_proto::v1::{
     GetBatchWorldRequest, GetDomainRequest, ImportFloorplanRequest, JobState, ListBatchWorldsRequest,
     ListConstraintFiltersRequest, ListDomainsRequest, ListExportersRequest, ListJobLogsRequest, LockUpdate, ObjectMove,
     ParseDomainRequest, RegisterDomainRequest, RemoveDomainRequest, RetrieveConstraintsRequest, RoomAddition,
-    RuleSentence, SearchAssetsRequest, SearchConstraintsRequest, UndoKnowledgeChangeRequest, WorldEdit,
+    RuleSentence, SearchAssetsRequest, SearchConstraintsRequest, SimulateWorldRequest, UndoKnowledgeChangeRequest,
+    WorldEdit,
 };
 use tonic::Code;
 use tonic_types::StatusExt;
@@ -94,8 +95,14 @@ async fn worlds_are_made_pinned_edited_and_written() {
         scene_graph: scene_graph.clone(),
         floorplan: floorplan.clone(),
         placements: placements.clone(),
+        hour: Some("night".into()),
+        ..Default::default()
     };
+    let nowhen = GenerateScenarioRequest { hour: Some("teatime".into()), ..asked.clone() };
+    let refused = c.worlds.generate_scenario(nowhen).await.expect_err("refused");
+    assert_eq!(refused.get_details_bad_request().expect("the place").field_violations[0].field, "hour");
     let scenario = c.worlds.generate_scenario(asked).await.expect("a scenario").into_inner().scenario;
+    assert_eq!(scenario.as_ref().and_then(|s| s.hour.as_deref()), Some("night"));
     let asked = AssembleWorldRequest { scene_graph, floorplan, placements, scenario, name: Some("by_hand".into()) };
     let assembled = c.worlds.assemble_world(asked.clone()).await.expect("a world").into_inner().world.expect("one");
     assert_eq!(assembled.world.expect("a world").name, "by_hand");
@@ -172,6 +179,20 @@ async fn worlds_are_made_pinned_edited_and_written() {
     assert!(!report.into_inner().report.expect("a report").sound);
     let refused = c.worlds.export_world(ExportWorldRequest { world: Some(broken), formats: Vec::new() }).await;
     assert_eq!(code(refused), Code::FailedPrecondition);
+
+    // people and robots, moved
+    let asked = SimulateWorldRequest { world: Some(world.clone()), seconds: Some(5.0), ..Default::default() };
+    let mut stream = c.worlds.simulate_world(asked.clone()).await.expect("moved").into_inner();
+    let mut bytes = Vec::new();
+    while let Some(piece) = stream.message().await.expect("a piece") {
+        bytes.extend(piece.chunk);
+    }
+    let archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).expect("an archive");
+    let names: Vec<&str> = archive.file_names().collect();
+    assert_eq!(names, ["trajectory.json", "walkable.geojson", "metrics.json"]);
+    let refused = c.worlds.simulate_world(SimulateWorldRequest { seconds: Some(-1.0), ..asked }).await;
+    let fields = refused.expect_err("refused").get_details_bad_request().expect("the place").field_violations;
+    assert_eq!(fields[0].field, "seconds");
 
     // files
     let exporters = c.worlds.list_exporters(ListExportersRequest::default()).await.expect("a list").into_inner();

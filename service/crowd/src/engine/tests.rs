@@ -1,0 +1,126 @@
+//! Two who meet where there is floor for one, and lines with more people than places.
+
+use d3dgen_model::Pose;
+use d3dgen_model::floorplan::Floorplan;
+use d3dgen_model::placements::Placements;
+use d3dgen_model::scenario::PERSON_RADIUS_M;
+use serde_json::{Value, json};
+
+use super::*;
+
+const SECONDS: f64 = 120.0;
+
+fn rectangle([x0, y0, x1, y1]: [f64; 4]) -> Value {
+    json!([{"x": x0, "y": y0}, {"x": x1, "y": y0}, {"x": x1, "y": y1}, {"x": x0, "y": y1}])
+}
+
+/// Returns a room of 12 x 6 m with blocks in it.
+fn hall(blocks: &[[f64; 4]]) -> Space {
+    let room = [0.0, 0.0, 12.0, 6.0];
+    let blocks = blocks.iter().enumerate().map(|(i, block)| {
+        json!({"obstacle_id": format!("obstacle_{i}"), "kind": "column", "outline": rectangle(*block), "room_id": "hall"})
+    });
+    let plan = json!({
+        "version": 1, "seed": 1, "scheme": "given", "walls": [], "doors": [], "windows": [],
+        "rooms": [{
+            "room_id": "hall", "room_type": "hall", "name": "Hall", "polygon": rectangle(room), "net_polygon": rectangle(room),
+            "net_area_m2": 72.0, "ceiling_height_m": 3.0, "materials": {"floor": "a", "wall": "b", "ceiling": "c"},
+        }],
+        "obstacles": blocks.collect::<Vec<_>>(),
+    });
+    let plan: Floorplan = serde_json::from_value(plan).expect("a plan");
+    let placements: Placements =
+        serde_json::from_value(json!({"version": 1, "seed": 1, "placements": []})).expect("no objects");
+    Space::new(0, &plan, &placements)
+}
+
+fn task(at: Point, act: Act, seconds: f64) -> Task {
+    Task { level: 0, room: 0, at, act, seconds, station: None, job: None }
+}
+
+fn walker(id: &str, from: Point, tasks: Vec<Task>) -> Mover {
+    let mut mover = Mover::new(id.into(), "visitor".into(), PERSON_RADIUS_M, 1.3, 0, from);
+    mover.tasks = tasks;
+    mover.repeats = false;
+    mover
+}
+
+/// Runs them and returns them, after nobody was in anybody or in a wall.
+fn moved(space: Space, stations: Vec<(usize, usize, Station)>, movers: Vec<Mover>) -> Vec<Mover> {
+    let spaces = [space];
+    let mut engine = Engine::new(&spaces, &[], stations, SECONDS);
+    engine.access = vec![vec![vec![true]]];
+    engine.movers = movers;
+    assert!(engine.run(&mut |_| true));
+    engine.movers
+}
+
+fn apart(movers: &[Mover]) -> f64 {
+    let mut least = f64::MAX;
+    for (i, a) in movers.iter().enumerate() {
+        for b in &movers[i + 1..] {
+            for (s, t) in a.samples().iter().zip(b.samples()) {
+                least = least.min(s.at.distance(t.at));
+            }
+        }
+    }
+    least
+}
+
+#[test]
+fn those_who_meet_in_an_aisle_for_one_get_past_each_other() {
+    // an aisle of 0.6 m between two blocks, 6 m long; nobody passes another one there
+    let blocks = [[3.0, 0.0, 9.0, 2.7], [3.0, 3.3, 9.0, 6.0]];
+    for crowd in 1..=3 {
+        let mut movers = Vec::new();
+        for k in 0..crowd {
+            let y = 2.0 + f64::from(k);
+            let (left, right) = (Point::new(1.0, y), Point::new(11.0, y));
+            movers.push(walker(&format!("east_{k}"), left, vec![task(right, Act::Stand, 1.0)]));
+            movers.push(walker(&format!("west_{k}"), right, vec![task(left, Act::Stand, 1.0)]));
+        }
+        let movers = moved(hall(&blocks), Vec::new(), movers);
+        for m in &movers {
+            assert_eq!((m.done.len(), m.missed), (1, 0), "{} of {crowd} gets there", m.id);
+        }
+        assert!(apart(&movers) > 2.0 * PERSON_RADIUS_M - 0.11, "{} m", apart(&movers));
+    }
+}
+
+#[test]
+fn who_stands_in_a_dead_end_lets_out_who_is_behind_it() {
+    // a dead end of 0.6 m: two stand in it, one behind the other, and the inner one leaves
+    let blocks = [[3.0, 0.0, 12.0, 2.7], [3.0, 3.3, 12.0, 6.0]];
+    let inner = walker("inner", Point::new(11.0, 3.0), vec![task(Point::new(1.0, 3.0), Act::Stand, 1.0)]);
+    let at = Point::new(8.0, 3.0);
+    let outer = walker("outer", at, vec![task(at, Act::Stand, 100.0)]);
+    let middle = Point::new(6.0, 3.0);
+    let first = walker("first", middle, vec![task(middle, Act::Stand, 100.0)]);
+    let movers = moved(hall(&blocks), Vec::new(), vec![inner, outer, first]);
+    assert_eq!(movers[0].done.len(), 1, "it gets out");
+    assert!(movers[1].at.distance(at) < 1.0, "it is back where it stood");
+}
+
+#[test]
+fn all_of_a_crowd_are_served_though_the_line_has_three_places() {
+    let at = |x: f64, y: f64| Pose { x, y, z: 0.0, yaw_rad: 0.0 };
+    let counter = Station {
+        station_id: "counter".into(),
+        room_id: "hall".into(),
+        placement_id: "counter_1".into(),
+        act: Act::Queue,
+        before: at(6.0, 0.5),
+        at: at(6.0, 0.5),
+        queue: vec![Point::new(6.0, 1.25), Point::new(6.0, 2.0)],
+    };
+    let away = Point::new(1.0, 5.0);
+    let crowd = (0..12).map(|k| {
+        let from = Point::new(2.0 + 0.7 * f64::from(k), 5.0);
+        let tasks = vec![task(Point::new(6.0, 0.5), Act::Queue, 3.0), task(away, Act::Stand, 1.0)];
+        walker(&format!("guest_{k}"), from, tasks)
+    });
+    let movers = moved(hall(&[]), vec![(0, 0, counter)], crowd.collect());
+    for m in &movers {
+        assert_eq!((m.done.len(), m.missed), (2, 0), "{} is served", m.id);
+    }
+}
