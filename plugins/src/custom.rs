@@ -54,8 +54,10 @@ impl Custom {
         let Some(first) = files.get(main) else {
             return Err(not(main, "is missing; a domain has a domain.toml".into()));
         };
-        let others = files.iter().filter(|(name, _)| *name != main && name.ends_with(".toml"));
-        let texts = std::iter::once((main, first.as_str())).chain(others.map(|(n, t)| (n.as_str(), t.as_str())));
+        let mut others: Vec<_> = files.iter().filter(|(name, _)| *name != main && name.ends_with(".toml")).collect();
+        others.sort_by_key(|(name, _)| merge::is_of_a_kind(Path::new(name)));
+        let others = others.into_iter().map(|(name, text)| (name.as_str(), text.as_str()));
+        let texts = std::iter::once((main, first.as_str())).chain(others);
         let merged = merge::texts(texts, common()).map_err(|(file, reason)| not(&file, reason))?;
         let domain = checked(&merged).map_err(|source| (main.to_owned(), source))?;
         let knowledge = match files.get("knowledge.json") {

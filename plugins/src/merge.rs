@@ -37,7 +37,13 @@ impl Merged {
     }
 }
 
-/// Returns `domain.toml` with every other `*.toml` of the folder merged in, in name order, as [`texts`] does.
+/// Returns true for a file of one kind of building, `kind_airport.toml`. Such files are merged after all others, so that a
+/// domain's first program, which is that of a building of no named kind, is never one of theirs.
+pub fn is_of_a_kind(file: &Path) -> bool {
+    file.file_name().is_some_and(|name| name.to_string_lossy().starts_with("kind_"))
+}
+
+/// Returns `domain.toml` with every other `*.toml` of the folder merged in, in name order, those of kinds last, as [`texts`] does.
 ///
 /// # Errors
 /// The file and what is wrong with it, as text.
@@ -64,12 +70,12 @@ pub fn common_folder(folder: &Path) -> Result<Value, String> {
     merged.map(|m| m.table).map_err(|(file, reason)| format!("{file}: {reason}"))
 }
 
-/// Returns the TOML files of a folder with their texts, in name order.
+/// Returns the TOML files of a folder with their texts, in name order, those of kinds last.
 fn files(folder: &Path) -> Result<Vec<(String, String)>, String> {
     let entries = std::fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let paths = entries.filter_map(Result::ok).map(|e| e.path());
     let mut files: Vec<_> = paths.filter(|p| p.extension().is_some_and(|x| x == "toml")).collect();
-    files.sort();
+    files.sort_by_key(|file| (is_of_a_kind(file), file.clone()));
     let read = |file: std::path::PathBuf| {
         let text = std::fs::read_to_string(&file).map_err(|e| format!("{}: {e}", file.display()))?;
         Ok((file.display().to_string(), text))

@@ -221,7 +221,7 @@ impl Router {
                         last = Some((total, p));
                     }
                 }
-                if !walker.allowed[level][room] && !(level == from_level && room == a) {
+                if !(walker.allowed[level][room] || level == from_level && room == a) {
                     continue;
                 }
                 // dead ends lead nowhere

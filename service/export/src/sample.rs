@@ -10,7 +10,7 @@ use d3dgen_model::world::World;
 use serde_json::{Value, json};
 
 /// Every build there is; a test compares it with the schema.
-pub const ALL_SHAPES: [Shape; 35] = {
+pub const ALL_SHAPES: [Shape; 38] = {
     use Shape::*;
     [
         Box,
@@ -48,6 +48,9 @@ pub const ALL_SHAPES: [Shape; 35] = {
         Scanner,
         Rack,
         Stairs,
+        Pool,
+        Track,
+        Stall,
     ]
 };
 

@@ -251,16 +251,8 @@ impl Asked<'_> {
             "garden_door" | "outdoor_door" => all(&|r| plan.doors_of(&r.id).any(outdoors)),
             "own_bathroom" => all(&|r| self.doors_between(&r.id, wet).next().is_some()),
             "own_entrance" => all(&|r| plan.doors_of(&r.id).any(outdoors)),
-            "small" => all(&|r| self.is_sized(r, |area, usual| area <= usual)),
-            "large" => all(&|r| self.is_sized(r, |area, usual| area >= usual)),
             other => self.named_so(other, rooms),
         }
-    }
-
-    /// Returns whether the floor of a room compares so with the usual one of its type.
-    fn is_sized(&self, room: &GraphRoom, compares: fn(f64, f64) -> bool) -> bool {
-        let usual = self.domain.room_type_or_generic(&room.room_type).area_m2.target;
-        self.world.floorplan.room(&room.id).is_some_and(|plan| compares(plan.net_polygon.area(), usual))
     }
 
     /// Returns whether rooms are of a type that has the attribute in its name: `double` of `patient_room_double`.

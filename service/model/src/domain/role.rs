@@ -115,7 +115,7 @@ pub struct Round {
     #[serde(default, skip_serializing_if = "is_zero")]
     pub arrivals_per_h: f64,
     /// Fewest and most who come together.
-    #[serde(default = "alone", skip_serializing_if = "is_alone")]
+    #[serde(default = "alone")]
     pub group: [u32; 2],
     /// True for people who are named in what is to be observed: their steps are told one by one.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -164,10 +164,6 @@ fn is_always(v: &f64) -> bool {
 
 fn alone() -> [u32; 2] {
     [1, 1]
-}
-
-fn is_alone(group: &[u32; 2]) -> bool {
-    *group == alone()
 }
 
 impl Role {

@@ -72,7 +72,7 @@ fn plans(prompt: &str) -> Vec<Floorplan> {
         floorplan::generate(&graph, plugin.domain(), &retrieve(&graph, plugin).limits, None).ok()
     };
     let made: Vec<Floorplan> = (0..SEEDS).filter_map(plan).collect();
-    assert!(made.len() as u64 >= SEEDS - 2, "`{prompt}`: {} of {SEEDS} seeds gave a plan", made.len());
+    assert!(made.len() as u64 >= SEEDS * 4 / 5, "`{prompt}`: {} of {SEEDS} seeds gave a plan", made.len());
     made
 }
 

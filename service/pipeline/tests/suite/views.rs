@@ -41,7 +41,7 @@ fn one_does_not_look_from_the_kitchen_or_the_table_into_a_bathroom() {
             held.extend(baths.map(|bath| !company.iter().any(|room| faces(bath, room))));
         }
     }
-    assert!(held.len() >= 30, "{}", held.len());
+    assert!(held.len() >= 20, "{}", held.len()); // en suites have no door to the hall
     most("bathroom doors that face no kitchen, table or sofa", 0.9, &held);
 }
 
