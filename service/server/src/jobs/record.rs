@@ -53,6 +53,7 @@ pub struct Job {
 /// What is to be done.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
+#[expect(clippy::large_enum_variant, reason = "a job has one, and few jobs run at once")]
 pub enum Spec {
     /// Worlds of one request, the seed counted up.
     Batch(batch::Batch),
