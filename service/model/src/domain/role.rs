@@ -146,7 +146,7 @@ pub struct RoundStep {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub all: bool,
     /// Share of the people who do it, 0 to 1.
-    #[serde(default = "always", skip_serializing_if = "is_always")]
+    #[serde(default = "always")]
     pub chance: f64,
 }
 
@@ -156,10 +156,6 @@ fn is_zero(v: &f64) -> bool {
 
 fn always() -> f64 {
     1.0
-}
-
-fn is_always(v: &f64) -> bool {
-    *v == 1.0
 }
 
 fn alone() -> [u32; 2] {
