@@ -2,7 +2,7 @@
 //! beside each other. The world says each of it.
 
 use d3dgen_model::domain::Domain;
-use d3dgen_model::scene_graph::{BY_PROMPT, BY_STYLE, GraphRoom, Note, SceneGraph};
+use d3dgen_model::scene_graph::{BY_PROMPT, BY_STYLE, GraphRoom, Note, Robot, SceneGraph};
 
 /// Shares by which rooms may be smaller and larger than was meant; none is smaller than its type allows.
 const SMALLER: f64 = 0.85;
@@ -42,8 +42,12 @@ fn unlocked(graph: &SceneGraph, domain: &Domain) -> Option<SceneGraph> {
     Some(out)
 }
 
-/// Returns the graph with wider ranges of areas; what the prompt gives in figures stays.
+/// Returns the graph with wider ranges of areas; what the prompt gives in figures stays. Rooms do not grow for a robot that they
+/// are to be made for: whoever asks for that is told which robot fits.
 fn roomier(graph: &SceneGraph, domain: &Domain) -> Option<SceneGraph> {
+    if graph.robots.iter().any(Robot::is_fitted) {
+        return None;
+    }
     let mut out = graph.clone();
     let mut wider = false;
     let open = |r: &&mut GraphRoom| r.area_range_m2[1] > TOLD * r.area_range_m2[0];
