@@ -120,16 +120,10 @@ mod tests {
         for builtin in all() {
             let domain = builtin.domain();
             // stairwells and shafts hold nothing but what makes them so
-            let vertical: Vec<&String> = domain
-                .circulation
-                .storeys
-                .iter()
-                .flat_map(|s| [Some(&s.stairs.room_type), s.elevator.as_ref().map(|e| &e.room_type)])
-                .flatten()
-                .collect();
+            let vertical = |id: &str| domain.circulation.storeys.as_ref().is_some_and(|s| s.joins(id));
             // a room that no domain knows has a name of its own and stays empty but for its light
             let unknown = |id: &str| id == "room";
-            for room in domain.room_types.iter().filter(|r| !vertical.contains(&&r.id) && !unknown(&r.id)) {
+            for room in domain.room_types.iter().filter(|r| !vertical(&r.id) && !unknown(&r.id)) {
                 let mut objects = BTreeSet::new();
                 for line in &room.furnishing {
                     match domain.group(&line.item) {

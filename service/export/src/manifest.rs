@@ -2,8 +2,8 @@
 //! checksums.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write;
 
+use data_encoding::HEXLOWER;
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
@@ -57,7 +57,8 @@ impl<'a> Manifest<'a> {
             self.places.entry(id).or_default().insert(format, place);
         }
         for file in files {
-            self.files.insert(file.path.clone(), (format, sha256(&file.bytes), file.bytes.len()));
+            self.files
+                .insert(file.path.clone(), (format, HEXLOWER.encode(&Sha256::digest(&file.bytes)), file.bytes.len()));
         }
     }
 
@@ -98,14 +99,6 @@ impl<'a> Manifest<'a> {
         });
         File::new(FILE, serde_json::to_string(&manifest).unwrap_or_default() + "\n")
     }
-}
-
-/// Returns the checksum of a file as lower-case hexadecimal digits.
-fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().fold(String::new(), |mut out, byte| {
-        let _ = write!(out, "{byte:02x}");
-        out
-    })
 }
 
 #[cfg(test)]

@@ -57,6 +57,7 @@ use d3dgen_model::style::Symmetry;
 pub use adjust::WallMove;
 use assemble::{Turn, assemble, turned};
 use cost::Judge;
+pub use numbers::highest;
 use party::Party;
 pub use proposed::{Follow, MOST_SKETCHED, Sketch, propose};
 use search::search;

@@ -79,7 +79,7 @@ impl Face {
 }
 
 /// Returns the highest number at the end of ids; 0 when none has one.
-pub(crate) fn highest<'a>(ids: impl Iterator<Item = &'a str>) -> u32 {
+pub fn highest<'a>(ids: impl Iterator<Item = &'a str>) -> u32 {
     let number = |id: &str| id.rsplit('_').next().and_then(|n| n.parse::<u32>().ok());
     ids.filter_map(number).max().unwrap_or(0)
 }

@@ -300,10 +300,7 @@ impl<'r, 'a> Choice<'r, 'a> {
 /// Returns true for rooms that only join others.
 fn is_circulation(domain: &Domain, room_type: &str) -> bool {
     let rules = &domain.circulation;
-    let vertical = |s: &d3dgen_model::domain::Storeys| {
-        s.stairs.room_type == room_type || s.elevator.as_ref().is_some_and(|e| e.room_type == room_type)
-    };
-    rules.room_type == room_type || rules.storeys.as_ref().is_some_and(vertical)
+    rules.room_type == room_type || rules.storeys.as_ref().is_some_and(|s| s.joins(room_type))
 }
 
 /// Says what became of a room that was taken.

@@ -116,7 +116,7 @@ impl<'a> Asked<'a> {
         let occupancy = &self.world.scene_graph.occupancy;
         let counted = [occupancy.staff, occupancy.beds, occupancy.desks, occupancy.visitors, occupancy.residents];
         let everywhere = |each| self.held(each, |_| true).places;
-        let places = [self.sleepers(), everywhere(desks), everywhere(seats_of)];
+        let places = [everywhere(sleepers), everywhere(desks), everywhere(seats_of)];
         let most = places.into_iter().max().unwrap_or(0);
         let what = format!("places for {}", asked.role.replace('_', " "));
         let found = Finding::number(AskedCount::at_least(asked.count.n), most, &what);
@@ -124,13 +124,6 @@ impl<'a> Asked<'a> {
             return found;
         }
         Finding { fate: Fate::Substituted, ..found }
-    }
-
-    fn sleepers(&self) -> u32 {
-        let beds = self.world.placements.placements.iter().filter(|p| {
-            self.domain.object(&p.object).is_some_and(|o| matches!(o.shape, Shape::Bed | Shape::HospitalBed))
-        });
-        beds.map(|p| if p.size_m[0] >= BED_FOR_TWO_M { 2 } else { 1 }).sum()
     }
 }
 
@@ -156,6 +149,11 @@ fn desks(thing: &Seat<'_>) -> u32 {
 
 fn beds(thing: &Seat<'_>) -> u32 {
     u32::from(matches!(thing.shape, Shape::Bed | Shape::HospitalBed))
+}
+
+/// Returns how many sleep in a bed.
+fn sleepers(thing: &Seat<'_>) -> u32 {
+    beds(thing) * if thing.width_m >= BED_FOR_TWO_M { 2 } else { 1 }
 }
 
 /// Returns how many sit on a thing; on a wheelchair that stands ready nobody has a place.

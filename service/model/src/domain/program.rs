@@ -278,6 +278,13 @@ pub struct Storeys {
     pub two_stairs: Vec<TwoStairs>,
 }
 
+impl Storeys {
+    /// Returns true for the room types that join storeys: stairwells and elevators.
+    pub fn joins(&self, room_type: &str) -> bool {
+        self.stairs.room_type == room_type || self.elevator.as_ref().is_some_and(|e| e.room_type == room_type)
+    }
+}
+
 /// Buildings with a second staircase. Of what is given all must be so; a figure counts for the storeys off the ground.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -6,6 +6,7 @@ use d3dgen_model::stage::Error;
 use d3dgen_model::{Point, Segment, slides};
 
 use super::{mismatch, refused};
+use crate::floorplan::highest;
 
 /// Two points this near are one, m.
 const SAME_M: f64 = 1e-3;
@@ -79,7 +80,7 @@ fn slide_door(plan: &mut Floorplan, at: usize, by_m: f64) -> Result<Vec<String>,
             Some(i) => move_end(&mut plan.walls[i], &axis, old, axis.at(new)),
             None if (new - old).abs() > SAME_M => {
                 let wall = Wall {
-                    wall_id: new_wall_id(plan),
+                    wall_id: format!("wall_{}", 1 + highest(plan.walls.iter().map(|w| w.wall_id.as_str()))),
                     line: Segment { start: axis.at(old.min(new)), end: axis.at(old.max(new)) },
                     thickness_m: door.wall_thickness_m,
                     room_ids: door.room_ids.clone(),
@@ -134,12 +135,6 @@ fn move_end(wall: &mut Wall, axis: &Axis, old: f64, new: Point) {
     } else {
         wall.line.end = new;
     }
-}
-
-fn new_wall_id(plan: &Floorplan) -> String {
-    let number = |id: &str| id.rsplit('_').next().and_then(|n| n.parse::<u32>().ok());
-    let highest = plan.walls.iter().filter_map(|w| number(&w.wall_id)).max().unwrap_or(0);
-    format!("wall_{}", highest + 1)
 }
 
 /// The line that a wall runs on, pointing to the east, or to the north where it runs north-south.

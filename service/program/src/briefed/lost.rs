@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use d3dgen_model::brief::{Ask, Bound, Brief, Fact, RoomsAsk};
-use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
+use d3dgen_model::domain::GENERIC_ROOM_TYPE;
 use d3dgen_model::scene_graph::Note;
 use d3dgen_plugins::Registry;
 
@@ -74,8 +74,8 @@ fn restore_single(reading: &mut Reading, brief: &Brief, facts: &Facts) {
 /// the name was read are called as the brief has it.
 fn restore_rooms(reading: &mut Reading, brief: &Brief, registry: &Registry) {
     // stairs and lifts follow from the storeys, one shaft for all of them
-    let vertical: Vec<&str> = vertical_types(reading.domain);
-    let plain = |r: &RoomsAsk| !r.room.id.as_deref().is_some_and(|id| vertical.contains(&id));
+    let storeys = reading.domain.circulation.storeys.as_ref();
+    let plain = |r: &RoomsAsk| !r.room.id.as_deref().is_some_and(|id| storeys.is_some_and(|s| s.joins(id)));
     let rooms = || brief.asks.iter().filter_map(|a| Some((a, rooms_of(a)?))).filter(|(_, r)| plain(r));
     let lost: Vec<&Ask> = rooms().filter(|(a, r)| is_lost(reading, brief, a, r)).map(|found| found.0).collect();
     let part = Brief { asks: lost.iter().map(|a| (*a).clone()).collect(), ..brief.clone() };
@@ -132,16 +132,6 @@ fn restore_levels(reading: &mut Reading, facts: &Facts) {
             reading.storeys.wanted.push(wanted);
         }
     }
-}
-
-/// Returns the room types of stairs and lifts.
-fn vertical_types(domain: &Domain) -> Vec<&str> {
-    let storeys = domain.circulation.storeys.iter();
-    storeys
-        .flat_map(|s| [Some(&s.stairs.room_type), s.elevator.as_ref().map(|e| &e.room_type)])
-        .flatten()
-        .map(String::as_str)
-        .collect()
 }
 
 fn rooms_of(ask: &Ask) -> Option<&RoomsAsk> {

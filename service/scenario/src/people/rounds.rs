@@ -89,7 +89,7 @@ impl<'s, 'a> Writer<'s, 'a> {
                 continue;
             }
             if let Some(role) = &step.to_role {
-                let all: Vec<&Agent> = known.iter().copied().filter(|a| &a.role == role && is_in(a, allowed)).collect();
+                let all = of_role(known, role, allowed);
                 let own = all[share.0 * all.len() / share.1..(share.0 + 1) * all.len() / share.1].to_vec();
                 out.extend(own.into_iter().map(|agent| self.to_person(agent, step, stream)));
                 continue;
@@ -143,7 +143,7 @@ impl<'s, 'a> Writer<'s, 'a> {
                 continue;
             }
             if let Some(role) = &step.to_role {
-                let all: Vec<&Agent> = known.iter().copied().filter(|a| &a.role == role && is_in(a, allowed)).collect();
+                let all = of_role(known, role, allowed);
                 out.extend(stream.pick(&all).map(|agent| self.to_person(agent, step, stream)));
                 continue;
             }
@@ -194,11 +194,7 @@ impl<'s, 'a> Writer<'s, 'a> {
 
     /// Returns true for a step at which a person may be at the beginning: nobody else begins there.
     pub fn can_begin(&self, step: &Step) -> bool {
-        let level = self.building.level_of(&step.room_id);
-        let at = Point::new(step.pose.x, step.pose.y);
-        let apart = |(other, p): &(i32, Point)| *other != level || p.distance(at) >= BEGIN_APART_M;
-        let off = |(other, p, radius): &(i32, Point, f64)| *other != level || p.distance(at) >= radius + ROBOT_PLAY_M;
-        step.with.is_none() && self.begun.iter().all(apart) && self.robots.iter().all(off)
+        step.with.is_none() && self.is_clear(self.building.level_of(&step.room_id), &step.pose)
     }
 
     /// Notes that a person begins at a step.
@@ -290,8 +286,12 @@ impl<'s, 'a> Writer<'s, 'a> {
 
     /// Returns true for a place before which nobody begins.
     fn is_free(&self, room: usize, station: &Station) -> bool {
-        let level = self.building.grounds[self.building.rooms[room].ground].level;
-        let at = Point::new(station.before.x, station.before.y);
+        self.is_clear(self.building.grounds[self.building.rooms[room].ground].level, &station.before)
+    }
+
+    /// Returns true for a place of a storey away from all who begin on it and from its robots.
+    fn is_clear(&self, level: i32, pose: &Pose) -> bool {
+        let at = Point::new(pose.x, pose.y);
         let off = |(other, p, radius): &(i32, Point, f64)| *other != level || p.distance(at) >= radius + ROBOT_PLAY_M;
         self.begun.iter().all(|(other, p)| *other != level || p.distance(at) >= BEGIN_APART_M)
             && self.robots.iter().all(off)
@@ -379,6 +379,11 @@ impl<'s, 'a> Writer<'s, 'a> {
             with: Some(agent.agent_id.clone()),
         }
     }
+}
+
+/// Returns the people of a role who begin in one of some rooms.
+fn of_role<'p>(known: &[&'p Agent], role: &str, allowed: &BTreeSet<&str>) -> Vec<&'p Agent> {
+    known.iter().copied().filter(|a| a.role == role && is_in(a, allowed)).collect()
 }
 
 /// Returns true for a person who begins in one of some rooms.
