@@ -10,7 +10,7 @@ use d3dgen_model::domain::{
     RobotUse, RoomType, Shape, Zone,
 };
 use d3dgen_model::measures::JAMB_M;
-use d3dgen_model::offer::has_docks;
+use d3dgen_model::offer::{has_docks, seated_in};
 use d3dgen_model::scene_graph::{BY_PROMPT, Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::stage::Error;
@@ -128,6 +128,11 @@ impl RoomSpec {
         self.daylight == Daylight::Required || self.zone == Zone::Outdoor || self.gate.is_some()
     }
 
+    /// Returns true where its own door to outdoors is one that people push open: no gate for vehicles, beds or baggage.
+    pub(crate) fn is_gate_by_hand(&self) -> bool {
+        self.gate.is_some_and(|wide| wide < BY_MOTOR_M)
+    }
+
     /// Returns the least length of one piece of outer wall that a room on the facade needs, m.
     pub(crate) fn least_outer_wall(&self) -> f64 {
         self.gate.map_or(LEAST_WALL_M, |g| Brief::opening(g) + 2.0 * (JAMB_M + OUTER_HALF_M))
@@ -142,6 +147,8 @@ const OVER_GATE_M: f64 = 0.4;
 /// Clear width of a door to outdoors from which on lorries come to it, m, and how high it is for them (practice: 3 m and more).
 const DOCK_GATE_M: f64 = 2.4;
 const DOCK_GATE_HEIGHT_M: f64 = 3.0;
+/// Clear width of a door to outdoors from which on it opens by a motor, m.
+const BY_MOTOR_M: f64 = 1.4;
 /// What a robot's circle has to spare where it passes, both sides together, m.
 const PASSING_M: f64 = 0.1;
 /// Floor that rooms have for a usual robot to turn on anyway, m^2.
@@ -641,7 +648,7 @@ fn room_spec(
         entrance: room.entrance,
         by_entrance: is_by_entrance(room, graph),
         for_guests: is_for_guests(room, graph, domain),
-        people: room.occupants.filter(|_| kind.zone != Zone::Night).unwrap_or(0),
+        people: people(room, domain, kind),
         gate,
         gate_height: gate_height(domain, kind),
         door_width: door_width.max(robot),
@@ -655,6 +662,12 @@ fn room_spec(
         unit: None,
         locked: false,
     }
+}
+
+/// Returns how many people work, meet, eat or wait in a room; 0 for rooms to sleep in.
+fn people(room: &GraphRoom, domain: &Domain, kind: &RoomType) -> u32 {
+    let seated = || seated_in(domain, kind, room.target_area_m2);
+    if kind.zone == Zone::Night { 0 } else { room.occupants.unwrap_or_else(seated) }
 }
 
 /// Returns true for a room that the prompt wants near the entrance.
