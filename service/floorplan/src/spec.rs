@@ -208,6 +208,8 @@ pub(crate) struct Brief {
     pub upper: bool,
     /// True for a storey of a home, whatever is on it.
     pub of_home: bool,
+    /// Areas of the rooms that stand on this storey together, corridors and stairs aside, net m^2; 0 for the highest one.
+    pub carries: f64,
     /// Stairs and elevator of a building with several storeys.
     pub core: Option<Core>,
     /// True in a domain of homes.
@@ -287,6 +289,7 @@ impl Brief {
             stem: false,
             upper: graph.rooms.iter().any(|r| r.level != 0),
             of_home,
+            carries: 0.0,
             core: None,
             for_homes: is_for_homes(domain),
             garden: Vec::new(),
@@ -436,6 +439,8 @@ impl Brief {
             specs[corridor].entrance = false;
         }
         let link = |l: &Link| Some(Link { a: index[l.a]?, b: index[l.b]?, ..*l });
+        let area = |rooms: &[RoomSpec]| rooms.iter().filter(|r| !r.circulation).map(|r| r.area_target).sum::<f64>();
+        let carries = self.carries * area(&specs) / area(&self.rooms).max(1.0);
         let both = |pairs: &[[usize; 2]]| pairs.iter().filter_map(|[a, b]| Some([index[*a]?, index[*b]?])).collect();
         let mut out = Self {
             rooms: specs,
@@ -452,6 +457,7 @@ impl Brief {
             conflicts: Vec::new(),
             guests: Vec::new(),
             stem: true,
+            carries,
             core: None,
             garden: Vec::new(),
             ..*self

@@ -80,6 +80,10 @@ pub(crate) fn generate(
     }
     let ground = numbers.iter().position(|&l| l == 0).unwrap_or(0);
     carry(&mut briefs[ground..]);
+    for upper in ground + 1..briefs.len() {
+        let rooms = briefs[upper].rooms.iter().filter(|r| !r.circulation);
+        briefs[upper - 1].carries = rooms.map(|r| r.area_target).sum();
+    }
     let heights: Vec<f64> = briefs.iter().map(|b| height(b, storeys)).collect();
     let tallest = heights.iter().copied().fold(0.0, f64::max);
     for (i, brief) in briefs.iter_mut().enumerate() {

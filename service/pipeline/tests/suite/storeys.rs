@@ -328,12 +328,13 @@ fn a_flat_on_a_storey_of_its_house_is_no_tower() {
     }
 }
 
-/// Returns the rooms of a storey that it is there for: all but stairs, corridors and what serves others.
+/// Returns the rooms of a storey that it is there for: all but stairs, corridors and small ones that serve others.
 fn lived_in(world: &World, registry: &Registry, level: i32) -> usize {
     let domain = registry.get(&world.scene_graph.domain).expect("it is built in").domain();
     let used = |r: &&PlanRoom| {
         let kind = domain.room_type_or_generic(&r.room_type);
-        !kind.wet && matches!(kind.zone, Zone::Day | Zone::Night | Zone::Public | Zone::Staff)
+        let lived_in = matches!(kind.zone, Zone::Day | Zone::Night | Zone::Public | Zone::Staff);
+        !kind.wet && (lived_in || !r.circulation && r.net_area_m2 > 12.0)
     };
     world.floorplan.rooms.iter().filter(|r| r.level == level).filter(used).count()
 }
