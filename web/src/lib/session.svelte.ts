@@ -8,11 +8,13 @@ import type { Placements } from "../gen/d3dgen/v1/placements_pb";
 import { type Report, ReportSchema } from "../gen/d3dgen/v1/report_pb";
 import type { Scenario } from "../gen/d3dgen/v1/scenario_pb";
 import { type SceneGraph, SceneGraphSchema } from "../gen/d3dgen/v1/scene_graph_pb";
+import type { Brief } from "../gen/d3dgen/v1/brief_pb";
 import { type World, WorldSchema } from "../gen/d3dgen/v1/world_pb";
 import { BuildingRequestSchema, type GenerateWorldRequest, type WorldEdit } from "../gen/d3dgen/v1/world_service_pb";
 import { codeOf, isRefusal, library, reasonOf, worlds } from "./api";
 import { keep, kept } from "./keep";
 import { type TextKey, t } from "./texts.svelte";
+import { isAsRead, wishes } from "./wishes.svelte";
 
 /** A state of the world, and what made it. */
 export interface Step {
@@ -205,6 +207,18 @@ class Session {
     }
   }
 
+  /** Takes a world that was not made of the words at hand; its own are at hand from now on. */
+  takeUp(made: Made) {
+    this.#take(made.world);
+    this.push(made, {});
+  }
+
+  #take(world: World) {
+    this.prompt = world.brief?.prompt ?? world.sceneGraph?.prompt ?? "";
+    this.selected = [];
+    void wishes.take(world.brief);
+  }
+
   /** Opens a world of the server's library. */
   async open(worldId: string, home: Home = {}): Promise<boolean> {
     this.notice = undefined;
@@ -213,8 +227,7 @@ class Session {
       const { world, report } = found ?? {};
       if (!kept || !world || !report) return false;
       home.kept = kept;
-      this.prompt = world.brief?.prompt ?? world.sceneGraph?.prompt ?? "";
-      this.selected = [];
+      this.#take(world);
       this.push({ world, report, label: t("open.did") }, home, kept.revision);
       return true;
     } catch (error) {
@@ -225,23 +238,30 @@ class Session {
 
   /** Makes a world of the prompt, one stage after the other; returns true when there is one. */
   async generate(): Promise<boolean> {
-    return await this.#make(this.#asked(this.prompt, BigInt(Math.max(0, Math.trunc(this.seed || 0)))), t("made"), {});
+    const seed = BigInt(Math.max(0, Math.trunc(this.seed || 0)));
+    const prompt = this.prompt;
+    return await this.#make(async () => {
+      await wishes.read(prompt);
+      return this.#asked(prompt, seed, wishes.areChanged ? wishes.brief : undefined);
+    }, t("made"), {});
   }
 
-  /** Returns the start of a world of words, in the manner that the person chose. */
-  #asked(prompt: string, seed: bigint): Start {
+  /** Returns the start of a world of words, or of a brief that says something else, in the manner that the person chose. */
+  #asked(prompt: string, seed: bigint, brief?: Brief): Start {
     const { clutter, ...styles } = this.manner;
-    const value = { prompt, seed, clutter: clutter || undefined, styles: Object.values(styles).filter(Boolean) };
+    const value = { prompt, brief, seed, clutter: clutter || undefined, styles: Object.values(styles).filter(Boolean) };
     return { case: "building", value: create(BuildingRequestSchema, value) };
   }
 
   /** Returns the start of a world like another one, with another seed. */
-  #like(world: World, seed: bigint): Start {
+  async #like(world: World, seed: bigint): Promise<Start> {
     const graph = clone(SceneGraphSchema, world.sceneGraph as SceneGraph);
     graph.seed = seed;
-    const prompt = world.brief?.prompt ?? graph.prompt;
+    const { brief } = world;
+    const prompt = brief?.prompt ?? graph.prompt;
     // of words alone, the stages are free to find other rooms; what is locked needs the rooms as they are
-    return prompt && !hasLocks(world) ? this.#asked(prompt, seed) : { case: "sceneGraph", value: graph };
+    if (hasLocks(world) || (!prompt && !brief)) return { case: "sceneGraph", value: graph };
+    return this.#asked(prompt, seed, !brief || (await isAsRead(brief)) ? undefined : brief);
   }
 
   /** Furnishes a plan that the person brought, as it is; `companions` are files that it names. Returns true when there is a world. */
@@ -251,7 +271,7 @@ class Session {
       const { sceneGraph, floorplan } = await worlds.importFloorplan({ fileName, content, companions, addDoors: true });
       if (!sceneGraph || !floorplan) return false;
       this.prompt = "";
-      return await this.#make({ case: "sceneGraph", value: sceneGraph }, fileName, {}, create(WorldSchema, { sceneGraph, floorplan }));
+      return await this.#make(async () => ({ case: "sceneGraph", value: sceneGraph }), fileName, {}, create(WorldSchema, { sceneGraph, floorplan }));
     } catch (error) {
       this.say(reasonOf(error));
       return false;
@@ -263,16 +283,17 @@ class Session {
     const world = this.step?.world;
     if (!world?.sceneGraph) return;
     const seed = world.sceneGraph.seed + 1n;
-    await this.#make(this.#like(world, seed), t("another"), this.step?.home, world);
+    await this.#make(() => this.#like(world, seed), t("another"), this.step?.home, world);
   }
 
   /** Makes three worlds with seeds of their own to choose from. */
   async three() {
     const world = this.step?.world;
     if (!world?.sceneGraph) return;
+    const { seed } = world.sceneGraph;
     const found: Made[] = [];
     for (let more = 1n; more <= 3n && !this.#stop?.signal.aborted; more++) {
-      const step = await this.#run(this.#like(world, world.sceneGraph.seed + more), t("alternative"), world);
+      const step = await this.#run(() => this.#like(world, seed + more), t("alternative"), world);
       if (!step) break;
       found.push(step);
       this.alternatives = [...found];
@@ -285,7 +306,7 @@ class Session {
     this.push(made);
   }
 
-  async #make(start: Start, label: string, home?: Home, pinned?: World): Promise<boolean> {
+  async #make(start: () => Promise<Start>, label: string, home?: Home, pinned?: World): Promise<boolean> {
     this.alternatives = [];
     this.selected = [];
     const made = await this.#run(start, label, pinned);
@@ -296,7 +317,7 @@ class Session {
     return made !== undefined;
   }
 
-  async #run(start: Start, label: string, pinned?: World): Promise<Made | undefined> {
+  async #run(start: () => Promise<Start>, label: string, pinned?: World): Promise<Made | undefined> {
     this.#stop?.abort();
     const stop = new AbortController();
     this.#stop = stop;
@@ -306,7 +327,7 @@ class Session {
     const pins = pinned && hasLocks(pinned);
     try {
       const request = {
-        start,
+        start: await start(),
         pinnedFloorplan: pins ? pinned.floorplan : undefined,
         pinnedPlacements: pins ? pinned.placements : undefined,
       };
@@ -448,6 +469,8 @@ class Session {
       home: homes[home] ?? {},
     }));
     this.at = Math.min(last.at, this.steps.length - 1);
+    const brief = this.step?.world.brief;
+    if (brief && brief.prompt === this.prompt) void wishes.take(brief);
     return this.step !== undefined;
   }
 }

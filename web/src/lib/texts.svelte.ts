@@ -43,3 +43,9 @@ export function figure(value: number, digits = 2): string {
 export function words(id: string): string {
   return id.replaceAll("_", " ");
 }
+
+/** Returns the name of a storey. */
+export function levelName(level: number): string {
+  if (level === 0) return t("level.ground");
+  return level > 0 ? t("level.upper", { level }) : t("level.basement", { level: -level });
+}
