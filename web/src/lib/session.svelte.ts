@@ -94,6 +94,8 @@ class Session {
   level = $state(0);
   #stop: AbortController | undefined;
   #checking = false;
+  /** Worlds whose verdict is of rules that have changed since. */
+  #judgedBefore = new Set<World>();
   #turn: Promise<void> = Promise.resolve();
 
   /** The world with its verdict, once there is one. */
@@ -132,6 +134,7 @@ class Session {
     this.endPreview();
     this.notice = undefined;
     this.#save();
+    this.#judgeAgain().catch((error: unknown) => this.say(reasonOf(error)));
   }
 
   /** Adds a state behind the present one; what was undone is gone. */
@@ -359,6 +362,23 @@ class Session {
   show(world: World) {
     this.preview = world;
     if (!this.#checking) void this.#judge();
+  }
+
+  /** Has the present state judged by the rules as they are now; the others are when somebody goes back to them. */
+  async rejudge() {
+    this.#judgedBefore = new Set(this.steps.map((step) => step.world));
+    await this.#judgeAgain();
+  }
+
+  async #judgeAgain() {
+    const step = this.step;
+    if (!step || !this.#judgedBefore.has(step.world)) return;
+    const { report } = await worlds.checkWorld({ world: step.world });
+    const at = this.steps.indexOf(step);
+    if (!report || at < 0) return;
+    this.#judgedBefore.delete(step.world);
+    this.steps = this.steps.with(at, { ...step, report });
+    this.#save();
   }
 
   async #judge() {
