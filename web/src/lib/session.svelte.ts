@@ -10,7 +10,7 @@ import type { Scenario } from "../gen/d3dgen/v1/scenario_pb";
 import { type SceneGraph, SceneGraphSchema } from "../gen/d3dgen/v1/scene_graph_pb";
 import type { Brief } from "../gen/d3dgen/v1/brief_pb";
 import { type World, WorldSchema } from "../gen/d3dgen/v1/world_pb";
-import { BuildingRequestSchema, type GenerateWorldRequest, type WorldEdit } from "../gen/d3dgen/v1/world_service_pb";
+import { type BuildingRequest, BuildingRequestSchema, type GenerateWorldRequest, type WorldEdit } from "../gen/d3dgen/v1/world_service_pb";
 import { codeOf, isRefusal, library, reasonOf, worlds } from "./api";
 import { keep, kept } from "./keep";
 import { type TextKey, t } from "./texts.svelte";
@@ -241,19 +241,21 @@ class Session {
 
   /** Makes a world of the prompt, one stage after the other; returns true when there is one. */
   async generate(): Promise<boolean> {
-    const seed = BigInt(Math.max(0, Math.trunc(this.seed || 0)));
-    const prompt = this.prompt;
-    return await this.#make(async () => {
-      await wishes.read(prompt);
-      return this.#asked(prompt, seed, wishes.areChanged ? wishes.brief : undefined);
-    }, t("made"), {});
+    return await this.#make(async () => ({ case: "building", value: await this.asked() }), t("made"), {});
   }
 
-  /** Returns the start of a world of words, or of a brief that says something else, in the manner that the person chose. */
-  #asked(prompt: string, seed: bigint, brief?: Brief): Start {
+  /** Returns what is asked for: the words at hand with what was changed of them, in the manner and variant that were chosen. */
+  async asked(): Promise<BuildingRequest> {
+    const prompt = this.prompt.trim();
+    const seed = BigInt(Math.max(0, Math.trunc(this.seed || 0)));
+    await wishes.read(prompt);
+    return this.#building(prompt, seed, wishes.areChanged ? wishes.brief : undefined);
+  }
+
+  #building(prompt: string, seed: bigint, brief?: Brief): BuildingRequest {
     const { clutter, ...styles } = this.manner;
     const value = { prompt, brief, seed, clutter: clutter || undefined, styles: Object.values(styles).filter(Boolean) };
-    return { case: "building", value: create(BuildingRequestSchema, value) };
+    return create(BuildingRequestSchema, value);
   }
 
   /** Returns the start of a world like another one, with another seed. */
@@ -264,7 +266,8 @@ class Session {
     const prompt = brief?.prompt ?? graph.prompt;
     // of words alone, the stages are free to find other rooms; what is locked needs the rooms as they are
     if (hasLocks(world) || (!prompt && !brief)) return { case: "sceneGraph", value: graph };
-    return this.#asked(prompt, seed, !brief || (await isAsRead(brief)) ? undefined : brief);
+    const isSaid = !brief || (await isAsRead(brief));
+    return { case: "building", value: this.#building(prompt, seed, isSaid ? undefined : brief) };
   }
 
   /** Furnishes a plan that the person brought, as it is; `companions` are files that it names. Returns true when there is a world. */
