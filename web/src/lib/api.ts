@@ -5,6 +5,7 @@ import { createGrpcWebTransport } from "@connectrpc/connect-web";
 import { AssetService } from "../gen/d3dgen/v1/asset_service_pb";
 import { DomainService } from "../gen/d3dgen/v1/domain_service_pb";
 import { JobService } from "../gen/d3dgen/v1/job_service_pb";
+import { KnowledgeService } from "../gen/d3dgen/v1/knowledge_service_pb";
 import { LibraryService } from "../gen/d3dgen/v1/library_service_pb";
 import { ServerService } from "../gen/d3dgen/v1/server_service_pb";
 import { WorldService } from "../gen/d3dgen/v1/world_service_pb";
@@ -30,6 +31,7 @@ export const server = createClient(ServerService, transport);
 export const worlds = createClient(WorldService, transport);
 export const assets = createClient(AssetService, transport);
 export const domains = createClient(DomainService, transport);
+export const knowledge = createClient(KnowledgeService, transport);
 export const library = createClient(LibraryService, transport);
 export const jobs = createClient(JobService, transport);
 
