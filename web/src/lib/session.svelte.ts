@@ -33,7 +33,7 @@ export interface Home {
 }
 
 /** A world with its verdict and what made it. */
-type Made = Pick<Step, "world" | "report" | "label">;
+export type Made = Pick<Step, "world" | "report" | "label">;
 
 /** How far a world is that is being made. */
 interface Making {
