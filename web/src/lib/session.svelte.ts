@@ -292,6 +292,11 @@ class Session {
     await this.#make(() => this.#like(world, seed), t("another"), this.step?.home, world);
   }
 
+  /** Plans rooms that the person put otherwise; what is locked stays. Returns true when there is a world. */
+  async replan(graph: SceneGraph, label: string): Promise<boolean> {
+    return await this.#make(async () => ({ case: "sceneGraph", value: graph }), label, this.step?.home, this.step?.world);
+  }
+
   /** Makes three worlds with seeds of their own to choose from. */
   async three() {
     const world = this.step?.world;
