@@ -144,6 +144,58 @@ test("each way to edit is one step, and undo takes it back", { skip }, async () 
   await context.close();
 });
 
+test("several things are selected, dragged along guides with their distances, aligned and duplicated, each one step", { skip }, async () => {
+  const { page, context, faults } = await opened(browser, server.url);
+  await make(page, "open office in Vienna with 8 desks and a meeting room");
+  // two loose things of one room, which are easy to point at
+  const ids = await page.locator("[data-object-id]").evaluateAll((all) => {
+    const loose = all.map((e) => e.dataset.objectId).filter((id) => /waste_bin|recycling|potted_plant|printer|filing_cabinet/.test(id));
+    const room = (id) => id.replace(/_(waste|recycling|potted|printer|filing).*$/, "");
+    return loose.filter((id) => loose.filter((other) => room(other) === room(id)).length > 1).slice(0, 2);
+  });
+  assert.equal(ids.length, 2, "two loose things of one room");
+  const [first, second] = ids.map((one) => `[data-object-id="${one}"]`);
+  const both = async () => {
+    const [a, b] = [await middle(page, first), await middle(page, second)];
+    await page.mouse.click(a.x, a.y);
+    await page.keyboard.down("Shift");
+    await page.mouse.click(b.x, b.y);
+    await page.keyboard.up("Shift");
+    await page.getByText("and 1 more").waitFor();
+    return a;
+  };
+  const was = await drawn(page);
+  const back = async (what) => {
+    await page.locator(`${id("undo")}:not([disabled])`).waitFor({ timeout: 20_000 });
+    assert.notEqual(await drawn(page), was, what);
+    await page.getByTestId("undo").click();
+    assert.equal(await drawn(page), was, `undo of ${what}`);
+    assert.ok(await page.getByTestId("undo").isDisabled(), `${what} is one step`);
+  };
+  const at = await both();
+  await drag(page, at, { x: 26, y: 17 }, async () => {
+    await page.getByTestId("dimension").first().waitFor();
+    for (const text of await page.getByTestId("dimension").allTextContents()) assert.match(text, /\d/);
+  });
+  await anyway(page);
+  await back("drag of two");
+  for (const name of ["align-x", "duplicate", "remove"]) {
+    await both();
+    await page.getByTestId(name).click();
+    await anyway(page);
+    await back(name);
+  }
+  // what comes near the edge of a neighbor snaps to it, and the guide shows
+  const spots = await Promise.all([middle(page, first), middle(page, second)]);
+  await drag(page, spots[0], { x: spots[1].x - spots[0].x + 3, y: 0 }, async () => {
+    await page.getByTestId("guide").first().waitFor({ state: "attached" }); // a line has no width
+    await page.keyboard.press("Escape");
+  });
+  assert.equal(await drawn(page), was, "Escape lets go");
+  sound(faults);
+  await context.close();
+});
+
 /** Takes what the page offers when no repair keeps the rules. */
 async function anyway(page) {
   const button = page.locator(`${id("notice")} button`, { hasText: "Do it anyway" });

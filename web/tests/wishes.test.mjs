@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 
-import { built, executable, launch, opened, saved, Server, sound } from "./support.mjs";
+import { built, drawn, executable, launch, make, opened, saved, Server, sound } from "./support.mjs";
 
 const skip = executable ? false : "no browser is here";
 const PROMPT = "flat in Oslo with 3 bedrooms, a study, a kitchen with an island, please flumpf it";
@@ -67,7 +67,7 @@ test("kind, number and storey of a wish are changed, one is left out, one is add
 
   // another one is asked for the same, and so is the page that comes back
   await page.getByTestId("stage-brief").click();
-  await page.getByRole("button", { name: "Another one" }).click();
+  await page.getByTestId("another").click();
   await page.locator('[data-testid="undo"]:not([disabled])').waitFor({ timeout: 60_000 });
   await saved(page);
   await page.reload();
@@ -83,6 +83,31 @@ test("kind, number and storey of a wish are changed, one is left out, one is add
   await page.locator('[data-testid="chip"][data-fate="off"]').waitFor();
   await page.getByTestId("wish-back").click();
   await page.locator('[data-testid="chip"][data-fate="off"]').waitFor({ state: "detached" });
+  sound(faults);
+  await context.close();
+});
+
+test("three alternatives stand side by side with the one at hand, and the one that is taken can be undone", { skip }, async () => {
+  const { page, context, faults } = await opened(browser, server.url);
+  await make(page, "flat in Porto with 2 bedrooms and a kitchen open to the living room");
+  const was = await drawn(page);
+  await page.getByTestId("stage-brief").click();
+  await page.getByTestId("three").click();
+  const all = page.getByTestId("alternative");
+  await all.nth(3).waitFor({ timeout: 60_000 });
+  await page.locator("progress").waitFor({ state: "detached" });
+  assert.equal(await all.count(), 4);
+  for (const text of await all.allInnerTexts()) assert.match(text, /\d m²[^]*Wishes met\s+\d of \d/);
+  const boxes = await Promise.all([0, 1, 2, 3].map((i) => all.nth(i).boundingBox()));
+  assert.ok(boxes.every((box) => box.y === boxes[0].y), "side by side");
+  const picture = (one) => one.locator("svg").evaluate((svg) => [...svg.querySelectorAll("path")].map((p) => p.getAttribute("d")).join());
+  const pictures = await Promise.all([0, 1, 2, 3].map((i) => picture(all.nth(i))));
+  assert.ok(new Set(pictures).size > 1, "not all the same");
+  await all.nth(2).click();
+  await page.getByTestId("plan-svg").waitFor();
+  assert.notEqual(await drawn(page), was);
+  await page.getByTestId("undo").click();
+  assert.equal(await drawn(page), was);
   sound(faults);
   await context.close();
 });

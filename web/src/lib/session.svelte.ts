@@ -33,7 +33,7 @@ export interface Home {
 }
 
 /** A world with its verdict and what made it. */
-type Made = Pick<Step, "world" | "report" | "label">;
+export type Made = Pick<Step, "world" | "report" | "label">;
 
 /** How far a world is that is being made. */
 interface Making {
@@ -290,6 +290,11 @@ class Session {
     if (!world?.sceneGraph) return;
     const seed = world.sceneGraph.seed + 1n;
     await this.#make(() => this.#like(world, seed), t("another"), this.step?.home, world);
+  }
+
+  /** Plans rooms that the person put otherwise; what is locked stays. Returns true when there is a world. */
+  async replan(graph: SceneGraph, label: string): Promise<boolean> {
+    return await this.#make(async () => ({ case: "sceneGraph", value: graph }), label, this.step?.home, this.step?.world);
   }
 
   /** Makes three worlds with seeds of their own to choose from. */
