@@ -622,9 +622,9 @@ fn room_spec(
     let robots = !graph.robots.is_empty();
     let sent = graph.robots.iter().any(|r| r.stops.contains(&room.id) || r.room_types.contains(&room.room_type));
     let works = sent || kind.robot.iter().any(|u| *u != RobotUse::KeepOut);
-    // nobody sleeps or washes behind a motor at home: those doors stand open for the robot
-    let retreat = kind.privacy == Privacy::Private && is_for_homes(domain);
-    let automatic = robots && works && domain.circulation.automatic_doors && !retreat;
+    // nobody lives behind motors: those doors stand open for the robot
+    let motors = domain.circulation.automatic_doors;
+    let automatic = robots && works && motors;
     // what hangs in the air or lies below the ground has no drive
     let gate = gate(domain, kind).filter(|_| room.level == 0);
     RoomSpec {
@@ -649,7 +649,7 @@ fn room_spec(
         // who uses a wheelchair has no floor to spare for a leaf
         slides: kind.sliding_door || graph.accessible && kind.wet && kind.privacy == Privacy::Private || automatic,
         automatic,
-        by_hand: robots && retreat,
+        by_hand: robots && !motors,
         kept_out: kind.robot.contains(&RobotUse::KeepOut) && !sent,
         entrance: room.entrance,
         by_entrance: is_by_entrance(room, graph),

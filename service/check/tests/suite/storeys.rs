@@ -78,7 +78,16 @@ const BREAKS: &[Break] = &[
     }),
     (
         "storey_in_the_air",
-        &["zone_net", "wall_gap", "wall_stray", "door_floating", "door_unlinked", "zone_overlap", "window_misplaced"],
+        &[
+            "zone_net",
+            "wall_gap",
+            "wall_stray",
+            "door_floating",
+            "door_unlinked",
+            "zone_overlap",
+            "window_misplaced",
+            "region_outside",
+        ],
         |world| {
             let ground = world.floorplan.rooms.iter_mut().filter(|r| r.level == 0 && !r.circulation);
             let room = ground.max_by(|a, b| a.net_area_m2.total_cmp(&b.net_area_m2))?;

@@ -263,9 +263,7 @@ fn robots_ride_to_other_storeys_or_the_world_says_that_they_do_not() {
         out.dedup();
         out
     };
-    let told = |world: &World| {
-        world.scene_graph.conflicts.iter().any(|n| n.code == "robots_miss_storeys")
-    };
+    let told = |world: &World| world.scene_graph.conflicts.iter().any(|n| n.code == "robots_miss_storeys");
     let made = world("Office on 3 floors with an elevator and a cleaning robot");
     assert!(made.report.sound);
     assert_eq!((levels(&made.world), told(&made.world)), (vec![0, 1, 2], false));
@@ -344,11 +342,17 @@ fn every_storey_stands_on_the_one_below_and_is_there_for_something() {
     let registry = Registry::builtin();
     for (prompt, seed) in [
         ("Casa de dos plantas: abajo salón, cocina y aseo; arriba tres dormitorios y dos baños", 104),
-        ("Two-storey house: downstairs a toilet and a store, upstairs living room, kitchen, four bedrooms and two bathrooms", 3),
+        (
+            "Two-storey house: downstairs a toilet and a store, upstairs living room, kitchen, four bedrooms and two bathrooms",
+            3,
+        ),
         ("Student house with 12 bedrooms, shared kitchen, 4 bathrooms on three floors", 134),
         ("Büro auf drei Geschossen für 60 Mitarbeiter, Empfang, Küche, sechs Besprechungsräume", 132),
         ("Terraced house, two storeys, three bedrooms, living room, kitchen, bathroom", 121),
-        ("Three-storey house: on the ground floor a garage, on the first floor living room and kitchen, on the second floor four bedrooms and two bathrooms", 5),
+        (
+            "Three-storey house: on the ground floor a garage, on the first floor living room and kitchen, on the second floor four bedrooms and two bathrooms",
+            5,
+        ),
     ] {
         let request = request(prompt, seed);
         let made = generate_world(&request, &registry, &Settings::default(), &mut |_| (), &AtomicBool::new(false));

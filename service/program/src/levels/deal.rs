@@ -275,10 +275,8 @@ fn carry(
 /// Scales the rooms of a storey whose areas neither the prompt nor their people fix, within what their types allow.
 fn scale(planned: &[Planned], rooms: &mut [GraphRoom], level: i32, factor: f64, lives: bool) {
     // rooms for so many people may have more floor, never less
-    let free = planned
-        .iter()
-        .zip(rooms)
-        .filter(|(p, _)| p.area_m2.is_none() && (p.people_area_m2.is_none() || factor > 1.0));
+    let free =
+        planned.iter().zip(rooms).filter(|(p, _)| p.area_m2.is_none() && (p.people_area_m2.is_none() || factor > 1.0));
     for (p, room) in free.filter(|(_, r)| r.level == level) {
         let [min, max] = room.area_range_m2;
         // nobody wants a garage as large as the bedrooms above it
@@ -290,12 +288,7 @@ fn scale(planned: &[Planned], rooms: &mut [GraphRoom], level: i32, factor: f64, 
 }
 
 /// Moves rooms down from storeys that would jut out over the one below, and into storeys without rooms.
-fn settle(
-    at: &mut [Option<i32>],
-    clusters: &mut [Cluster],
-    (above, used): (&[i32], &[bool]),
-    load: &Load<'_>,
-) {
+fn settle(at: &mut [Option<i32>], clusters: &mut [Cluster], (above, used): (&[i32], &[bool]), load: &Load<'_>) {
     for _ in 0..clusters.len() {
         let empty = above.iter().copied().find(|&l| !is_in_use(at, used, l));
         let heavy = above.windows(2).find(|w| load(at, clusters, w[1]) > LARGER * load(at, clusters, w[0]));
