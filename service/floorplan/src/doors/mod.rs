@@ -29,6 +29,8 @@ const OPEN_MAX_M: f64 = 4.0;
 const OPEN_JAMB_M: f64 = 0.3;
 /// Wall that a room open to several others keeps in one piece beside each opening, as far as that leaves one, m.
 const RUN_M: f64 = 2.7;
+/// The same between rooms without a kitchen's run, m.
+const SIDEBOARD_M: f64 = 1.4;
 /// What a meter counts in a home by which the door of a bedroom is nearer to the entrance than it might be, and by which that
 /// of a room of the day is further from it.
 const FROM_ENTRANCE: f64 = 0.2;
@@ -457,9 +459,15 @@ impl Site<'_> {
                 let start = (from + to - whole) / 2.0;
                 return vec![self.open_spot(s, a, b, start, whole)];
             }
-            // what stands in the smaller room needs walls too: half of this one, in one piece, or what a kitchen's run takes
+            // what stands in the smaller room needs walls too: half of this one, in one piece, or what a kitchen's run takes; between
+            // rooms to sit in a sideboard's length is enough
             let length = meters(s.len());
-            let width = (length / 2.0).min(length - RUN_M).clamp(opening, whole);
+            let width = if [a, b].iter().any(|&r| self.brief.rooms[r].wet) {
+                (length / 2.0).min(length - RUN_M)
+            } else {
+                (length / 2.0).max(length - SIDEBOARD_M)
+            };
+            let width = width.clamp(opening, whole);
             return [from, to - width].map(|start| self.open_spot(s, a, b, start, width)).into();
         }
         let into = self.swing_room(a, b);

@@ -326,6 +326,20 @@ fn a_flat_on_a_storey_of_its_house_is_no_tower() {
     }
 }
 
+#[test]
+fn what_comes_from_the_street_is_on_the_ground_floor() {
+    let registry = Registry::builtin();
+    for (prompt, room_type) in [
+        ("Restaurant op twee verdiepingen met keuken, bar, 80 zitplaatsen en een kantoor", "kitchen"),
+        ("Fire station on two floors with vehicle hall for 3 engines, dormitory, kitchen, training room", "vehicle_bay"),
+        ("Primary school with 8 classrooms on two floors, canteen and kitchen", "kitchen"),
+    ] {
+        let graph = generate(&request(prompt, 1), &registry).unwrap();
+        let mut rooms = graph.rooms.iter().filter(|r| r.room_type == room_type).peekable();
+        assert!(rooms.peek().is_some() && rooms.all(|r| r.level == 0), "{prompt}");
+    }
+}
+
 /// Returns the rooms of a storey that it is there for: all but stairs, corridors and small ones that serve others.
 fn lived_in(world: &World, registry: &Registry, level: i32) -> usize {
     let domain = registry.get(&world.scene_graph.domain).expect("it is built in").domain();

@@ -1,7 +1,7 @@
 //! Which room goes on which storey, and the stairs and elevators that join them.
 
 use d3dgen_knowledge::jurisdiction;
-use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, RoomType, Storeys as Rules, TwoStairs, Zone};
+use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, RoomType, Shape, Storeys as Rules, TwoStairs, Zone};
 use d3dgen_model::offer;
 use d3dgen_model::offer::sleeps;
 use d3dgen_model::scene_graph::{BY_CIRCULATION, Connector, GraphEdge, GraphRoom, Note};
@@ -484,11 +484,17 @@ fn clusters<'p>(
                 }
             };
         let area = rooms.iter().map(|&r| areas[r]).sum();
-        let fixed = rooms.iter().find_map(|&r| fixed[r]);
+        let at_street = rooms.iter().any(|&r| comes_from_street(reading.domain, planned[r].kind));
+        let fixed = rooms.iter().find_map(|&r| fixed[r]).or_else(|| at_street.then_some(0));
         let unit = planned[main].unit.as_deref();
         out.push(Cluster { rooms, unit, area, fixed, likes });
     }
     out
+}
+
+/// Returns true for rooms that vehicles stand in, or that have a door of their own for what comes from the street.
+fn comes_from_street(domain: &Domain, kind: &RoomType) -> bool {
+    kind.outdoor_door_m.is_some() || offer::has_shape(domain, kind, &[Shape::Vehicle])
 }
 
 /// Connects the rooms of each storey and joins the storeys.
