@@ -131,6 +131,15 @@ test("each way to edit is one step, and undo takes it back", { skip }, async () 
       }
     }
   }, "door");
+  await undone(async () => {
+    for (const window of await windows(page)) {
+      for (const by of [16, -16]) {
+        await drag(page, window, window.upright ? { x: 0, y: by } : { x: by, y: 0 });
+        await page.waitForTimeout(400);
+        if (await page.getByTestId("undo").isEnabled()) return;
+      }
+    }
+  }, "window");
   const room = await page.locator("[data-room-id]").first().getAttribute("data-room-id");
   await open(page, "rooms");
   await page.locator(`[data-bubble-id="${room}"]`).click();
@@ -144,7 +153,7 @@ test("each way to edit is one step, and undo takes it back", { skip }, async () 
   await context.close();
 });
 
-test("several things are selected, dragged along guides with their distances, aligned and duplicated, each one step", { skip }, async () => {
+test("several things are selected, dragged along guides with their distances, aligned and duplicated, doors turned, each one step", { skip }, async () => {
   const { page, context, faults } = await opened(browser, server.url);
   await make(page, "open office in Vienna with 8 desks and a meeting room");
   // two loose things of one room, which are easy to point at
@@ -185,6 +194,16 @@ test("several things are selected, dragged along guides with their distances, al
     await anyway(page);
     await back(name);
   }
+  // a door is hung the other way, and turned into the other room
+  for (const name of ["door-hinge", "door-room"]) {
+    for (const door of await doors(page)) {
+      await page.mouse.click(door.x, door.y);
+      await page.getByTestId("inspector").filter({ hasText: "Door," }).waitFor();
+      if ((await page.getByTestId(name).count()) > 0) break;
+    }
+    await page.getByTestId(name).click();
+    await back(name);
+  }
   // what comes near the edge of a neighbor snaps to it, and the guide shows
   const spots = await Promise.all([middle(page, first), middle(page, second)]);
   await drag(page, spots[0], { x: spots[1].x - spots[0].x + 3, y: 0 }, async () => {
@@ -205,10 +224,12 @@ async function anyway(page) {
 }
 
 /** Returns where doors with leaves are. */
-async function doors(page) {
-  return page.evaluate(() => {
-    const all = [...document.querySelectorAll("[data-door-id]")].filter((d) => d.querySelector(".leaf").getAttribute("d"));
-    const boxes = all.map((d) => d.querySelector(".hole").getBoundingClientRect());
+const doors = (page) => openings(page, "[data-door-id]:has(.leaf[d]:not([d=''])) .hole");
+const windows = (page) => openings(page, "[data-window-id] .hole");
+
+async function openings(page, selector) {
+  return page.locator(selector).evaluateAll((all) => {
+    const boxes = all.map((e) => e.getBoundingClientRect());
     return boxes.map((b) => ({ x: b.x + b.width / 2, y: b.y + b.height / 2, upright: b.height > b.width }));
   });
 }
