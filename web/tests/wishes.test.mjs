@@ -111,3 +111,26 @@ test("three alternatives stand side by side with the one at hand, and the one th
   sound(faults);
   await context.close();
 });
+
+test("what contradicts itself is built all the same if one says so, and an unknown kind of building is chosen", { skip }, async () => {
+  const { page, context, faults } = await opened(browser, server.url);
+  await page.getByTestId("prompt").fill("maison avec trois chambres sans cuisine, avec une cuisine");
+  await page.getByTestId("generate").click();
+  const notice = page.getByTestId("notice");
+  await notice.waitFor();
+  assert.doesNotMatch(await notice.innerText(), /building\.prompt|allow_conflicts/);
+  await notice.getByRole("button", { name: "Build it all the same" }).click();
+  await built(page);
+  await page.getByTestId("stage-brief").click();
+  await page.getByTestId("prompt").fill("zorblatt");
+  await page.getByTestId("generate").click();
+  await notice.waitFor();
+  assert.doesNotMatch(await notice.innerText(), /scene_graph|--domain/);
+  await notice.getByRole("button", { name: "Choose the kind of building" }).click();
+  await page.getByTestId("kind").selectOption("office");
+  await page.getByTestId("generate").click();
+  await built(page);
+  await page.locator("[data-room-id] title", { hasText: /office|desk/i }).first().waitFor({ state: "attached" });
+  sound(faults);
+  await context.close();
+});

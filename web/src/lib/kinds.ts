@@ -29,10 +29,16 @@ export function kindsOf(domainId: string): Promise<Kinds> {
 
 async function load(domainId: string, language: string): Promise<Kinds> {
   const { manifest } = await domains.getDomain({ domainId, includeManifest: true });
-  const named = (one: Named) => (language === "en" ? one.label : (one.keywords[language]?.items[0] ?? one.label));
+  const named = (one: Named) => (language === "en" ? one.label : capital(one.keywords[language]?.items[0] ?? one.label, language));
   const sorted = (all: Kind[]) => all.sort((a, b) => a.name.localeCompare(b.name, language));
   return {
     room: sorted((manifest?.roomTypes ?? []).map((r) => ({ id: r.roomTypeId, name: named(r) }))),
     object: sorted((manifest?.objects ?? []).map((o) => ({ id: o.objectId, name: named(o) }))),
   };
+}
+
+/** Returns a name that begins with a capital: words for prompts are written small. */
+function capital(name: string, language: string): string {
+  const [first = ""] = name;
+  return first.toLocaleUpperCase(language) + name.slice(first.length);
 }

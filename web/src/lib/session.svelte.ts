@@ -13,6 +13,7 @@ import { type World, WorldSchema } from "../gen/d3dgen/v1/world_pb";
 import { type BuildingRequest, BuildingRequestSchema, type GenerateWorldRequest, type WorldEdit } from "../gen/d3dgen/v1/world_service_pb";
 import { codeOf, isRefusal, library, reasonOf, worlds } from "./api";
 import { keep, kept } from "./keep";
+import { placesOf } from "./problems";
 import { type TextKey, t } from "./texts.svelte";
 import { isAsRead, wishes } from "./wishes.svelte";
 
@@ -75,6 +76,8 @@ class Session {
   prompt = $state("");
   /** What the person chose of the manner; empty for what the sentence says. */
   manner = $state({ clutter: "", space: "", layout: "", symmetry: "" });
+  /** Kind of building that the person chose; empty for what the sentence says. */
+  domainId = $state("");
   seed = $state(0);
   steps = $state.raw<Step[]>([]);
   at = $state(-1);
@@ -88,6 +91,8 @@ class Session {
   /** True when the server lets this person keep worlds. */
   canKeep = $state(false);
   notice = $state.raw<Notice | undefined>();
+  /** Part of the last request that was at fault: `building.prompt`. */
+  refused = "";
   busy = $state(false);
   /** Ids of selected rooms, walls, doors and objects. */
   selected = $state.raw<string[]>([]);
@@ -219,6 +224,7 @@ class Session {
   #take(world: World) {
     this.prompt = world.brief?.prompt ?? world.sceneGraph?.prompt ?? "";
     this.selected = [];
+    this.domainId = "";
     void wishes.take(world.brief);
   }
 
@@ -239,9 +245,12 @@ class Session {
     }
   }
 
-  /** Makes a world of the prompt, one stage after the other; returns true when there is one. */
-  async generate(): Promise<boolean> {
-    return await this.#make(async () => ({ case: "building", value: await this.asked() }), t("made"), {});
+  /**
+   * Makes a world of the prompt, one stage after the other; returns true when there is one. What contradicts itself is
+   * refused unless it is `allowed`; where it is the request that is at fault, `refused` says which part of it.
+   */
+  async generate(allowed = false): Promise<boolean> {
+    return await this.#make(async () => ({ case: "building", value: await this.asked() }), t("made"), {}, undefined, allowed);
   }
 
   /** Returns what is asked for: the words at hand with what was changed of them, in the manner and variant that were chosen. */
@@ -254,7 +263,7 @@ class Session {
 
   #building(prompt: string, seed: bigint, brief?: Brief): BuildingRequest {
     const { clutter, ...styles } = this.manner;
-    const value = { prompt, brief, seed, clutter: clutter || undefined, styles: Object.values(styles).filter(Boolean) };
+    const value = { prompt, brief, seed, domainId: this.domainId || undefined, clutter: clutter || undefined, styles: Object.values(styles).filter(Boolean) };
     return create(BuildingRequestSchema, value);
   }
 
@@ -317,10 +326,10 @@ class Session {
     this.push(made);
   }
 
-  async #make(start: () => Promise<Start>, label: string, home?: Home, pinned?: World): Promise<boolean> {
+  async #make(start: () => Promise<Start>, label: string, home?: Home, pinned?: World, allowed = false): Promise<boolean> {
     this.alternatives = [];
     this.selected = [];
-    const made = await this.#run(start, label, pinned);
+    const made = await this.#run(start, label, pinned, allowed);
     if (made) {
       this.level = 0;
       this.push(made, home);
@@ -328,17 +337,19 @@ class Session {
     return made !== undefined;
   }
 
-  async #run(start: () => Promise<Start>, label: string, pinned?: World): Promise<Made | undefined> {
+  async #run(start: () => Promise<Start>, label: string, pinned?: World, allowConflicts = false): Promise<Made | undefined> {
     this.#stop?.abort();
     const stop = new AbortController();
     this.#stop = stop;
     this.notice = undefined;
+    this.refused = "";
     const world = create(WorldSchema, {});
     this.making = { stage: "scene_graph", fraction: 0, world };
     const pins = pinned && hasLocks(pinned);
     try {
       const request = {
         start: await start(),
+        allowConflicts,
         pinnedFloorplan: pins ? pinned.floorplan : undefined,
         pinnedPlacements: pins ? pinned.placements : undefined,
       };
@@ -353,7 +364,10 @@ class Session {
         };
       }
     } catch (error) {
-      if (!stop.signal.aborted) this.say(reasonOf(error));
+      if (!stop.signal.aborted) {
+        this.refused = placesOf(error)[0]?.path ?? "";
+        this.say(reasonOf(error));
+      }
     } finally {
       if (this.#stop === stop) this.making = undefined;
     }

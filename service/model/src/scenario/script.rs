@@ -143,6 +143,11 @@ pub struct Itinerary {
 }
 
 impl Flow {
+    /// Returns how many people of it come in a second.
+    pub fn people_per_s(&self) -> f64 {
+        self.per_min / 60.0 * f64::from(self.group[0] + self.group[1]) / 2.0
+    }
+
     /// Returns the steps of all its itineraries.
     pub fn steps(&self) -> impl Iterator<Item = &Step> {
         self.itineraries.iter().flat_map(|i| &i.steps)
