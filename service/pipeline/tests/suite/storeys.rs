@@ -331,7 +331,10 @@ fn what_comes_from_the_street_is_on_the_ground_floor() {
     let registry = Registry::builtin();
     for (prompt, room_type) in [
         ("Restaurant op twee verdiepingen met keuken, bar, 80 zitplaatsen en een kantoor", "kitchen"),
-        ("Fire station on two floors with vehicle hall for 3 engines, dormitory, kitchen, training room", "vehicle_bay"),
+        (
+            "Fire station on two floors with vehicle hall for 3 engines, dormitory, kitchen, training room",
+            "vehicle_bay",
+        ),
         ("Primary school with 8 classrooms on two floors, canteen and kitchen", "kitchen"),
     ] {
         let graph = generate(&request(prompt, 1), &registry).unwrap();

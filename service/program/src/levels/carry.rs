@@ -1,12 +1,13 @@
-//! Storeys that would be smaller than the one that stands on them get rooms more, of those that the domain has for that: what
-//! is larger than the storey below hangs in the air. How rooms grow for the same reason is in `deal`.
+//! Storeys that would be smaller than the one that stands on them get rooms more, of those that the domain has for that, and their
+//! rooms grow: what is larger than the storey below hangs in the air. Which rooms come down for that is in `deal`.
 
 use d3dgen_model::domain::RoomType;
-use d3dgen_model::scene_graph::Note;
+use d3dgen_model::scene_graph::{GraphRoom, Note};
 
 use super::deal;
 use super::storeys::Wanted;
 use crate::built::planned::Planned;
+use crate::built::rooms::tenth;
 use crate::reading::Reading;
 use crate::tokens::storey::Where;
 
@@ -16,6 +17,29 @@ const SMALL: f64 = 0.75;
 const MOST_ADDED: usize = 4;
 /// How much larger than usual the rooms of a storey may be, as a factor.
 const ROOMY: f64 = 1.3;
+
+/// How much larger than meant rooms may be that carry others, as a factor, and the share of the storey above that a storey has by
+/// its areas from which on they need not.
+const MOST_TO_CARRY: f64 = 1.4;
+const ENOUGH: f64 = 1.1;
+
+/// Lets the rooms of a storey that people use grow beyond what their types have, where those above it are about as large or larger.
+pub(super) fn grow(planned: &[Planned], rooms: &mut [GraphRoom], (lower, upper): (i32, i32)) {
+    let (below, above) = (deal::area_on(rooms, lower), deal::area_on(rooms, upper));
+    if below >= ENOUGH * above {
+        return;
+    }
+    let grows = |p: &Planned, r: &GraphRoom| r.level == lower && p.area_m2.is_none() && deal::is_used(p.kind);
+    let free: f64 = planned.iter().zip(&*rooms).filter(|(p, r)| grows(p, r)).map(|(_, r)| r.target_area_m2).sum();
+    let factor = (1.0 + (above - below).max(0.0) / free.max(1.0)).min(MOST_TO_CARRY);
+    for (p, room) in planned.iter().zip(rooms) {
+        if grows(p, room) {
+            let most = MOST_TO_CARRY * room.target_area_m2;
+            room.target_area_m2 = tenth(factor * room.target_area_m2);
+            room.area_range_m2[1] = room.area_range_m2[1].max(tenth(most));
+        }
+    }
+}
 
 /// Adds rooms to storeys that are smaller than the one above, where the prompt leaves the rooms open.
 pub(crate) fn fill<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {

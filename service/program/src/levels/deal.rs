@@ -7,6 +7,7 @@ use d3dgen_model::offer::sleeps;
 use d3dgen_model::scene_graph::{BY_CIRCULATION, Connector, GraphEdge, GraphRoom, Note};
 use d3dgen_model::storeys::{LinkKind, VerticalLink};
 
+use super::carry;
 use crate::built::edges::{self, Web};
 use crate::built::planned::Planned;
 use crate::built::rooms;
@@ -29,10 +30,6 @@ const ROUNDS: usize = 4;
 /// Share of a storey that the one below has at least before rooms which the prompt puts above come down, and up to which they do.
 const FOUNDATION: f64 = 0.4;
 const CARRIES: f64 = 0.75;
-/// How much larger than meant rooms may be that carry others, as a factor, and how much smaller than the storey above by their
-/// areas a storey is for that.
-const MOST_TO_CARRY: f64 = 1.4;
-const NEARLY: f64 = 0.9;
 /// Rooms of a storey from which on a building has two stairs whatever its domain says.
 const TWO_STAIRS: usize = 16;
 /// The least floor of such a storey beside its corridor, m^2: on less all rooms are within 35 m of one stair (ASR A2.3).
@@ -87,6 +84,7 @@ pub(crate) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
     let fixed = fixed_levels(reading, planned, levels);
     let mut clusters = clusters(reading, rules, planned, areas, &fixed);
     let mut at: Vec<Option<i32>> = clusters.iter().map(|c| c.fixed).collect();
+    let told: Vec<bool> = at.iter().map(Option::is_some).collect();
     let above: Vec<i32> = levels.iter().copied().filter(|l| *l >= 0).collect();
     let total: f64 = clusters.iter().map(|c| c.area).sum();
     let mean = total / above.len() as f64;
@@ -169,7 +167,7 @@ pub(crate) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
     let used: Vec<bool> = clusters.iter().map(|c| c.rooms.iter().any(|&r| is_used(planned[r].kind))).collect();
     settle(&mut at, &mut clusters, (&above, &used), &load);
     let moved = stand_on_ground(&mut at, &clusters, (&above, &used), &load);
-    for (i, to) in moved {
+    for (i, to) in moved.into_iter().filter(|(i, _)| told[*i]) {
         let names: Vec<&str> = clusters[i].rooms.iter().map(|&r| planned[r].kind.label.as_str()).collect();
         let names = names.join(", ").to_lowercase();
         let message = format!("{names}: asked for on a storey that nothing would carry; planned on level {to}");
@@ -220,13 +218,10 @@ fn least_loaded(levels: &[i32], load: impl Fn(i32) -> f64) -> i32 {
 /// and the prompt allow.
 pub(crate) fn even_out(planned: &[Planned], rooms: &mut [GraphRoom], levels: &[i32], lives: bool) {
     let above: Vec<i32> = levels.iter().copied().filter(|l| *l >= 0).collect();
-    let area = |rooms: &[GraphRoom], level: i32| -> f64 {
-        rooms.iter().filter(|r| r.level == level).map(|r| r.target_area_m2).sum()
-    };
     // from the top down: what a storey carries is settled before it is asked to carry it
     for pair in above.windows(2).rev() {
         for _ in 0..if lives { ROUNDS } else { 1 } {
-            let (lower, upper) = (area(rooms, pair[0]), area(rooms, pair[1]));
+            let (lower, upper) = (area_on(rooms, pair[0]), area_on(rooms, pair[1]));
             if upper <= lower * if lives { 1.0 + EVEN } else { 1.0 } || lower <= 0.0 {
                 break;
             }
@@ -237,39 +232,20 @@ pub(crate) fn even_out(planned: &[Planned], rooms: &mut [GraphRoom], levels: &[i
         }
     }
     for pair in above.windows(2).rev() {
-        carry(planned, rooms, (pair[0], pair[1]), &area);
+        carry::grow(planned, rooms, (pair[0], pair[1]));
     }
     // a storey that is a unit is to leave no roof beside its corridor
     for pair in above.windows(2).filter(|_| !lives && planned.iter().any(|p| p.unit.is_some())) {
-        let (lower, upper) = (area(rooms, pair[0]), area(rooms, pair[1]));
+        let (lower, upper) = (area_on(rooms, pair[0]), area_on(rooms, pair[1]));
         if upper > 0.0 && (1.0..MOST_SPREAD).contains(&(lower / upper)) {
             scale(planned, rooms, pair[1], lower / upper, lives);
         }
     }
 }
 
-/// Lets the rooms of a storey that people use grow beyond what their types have, where those above it are as large or larger: what
-/// is larger than the storey below hangs in the air.
-fn carry(
-    planned: &[Planned],
-    rooms: &mut [GraphRoom],
-    (lower, upper): (i32, i32),
-    area: &impl Fn(&[GraphRoom], i32) -> f64,
-) {
-    let (below, above) = (area(rooms, lower), area(rooms, upper));
-    if above <= NEARLY * below {
-        return;
-    }
-    let grows = |p: &Planned, r: &GraphRoom| r.level == lower && p.area_m2.is_none() && is_used(p.kind);
-    let free: f64 = planned.iter().zip(&*rooms).filter(|(p, r)| grows(p, r)).map(|(_, r)| r.target_area_m2).sum();
-    let factor = (1.0 + (above - below).max(0.0) / free.max(1.0)).min(MOST_TO_CARRY);
-    for (p, room) in planned.iter().zip(rooms) {
-        if grows(p, room) {
-            let most = MOST_TO_CARRY * room.target_area_m2;
-            room.target_area_m2 = rooms::tenth(factor * room.target_area_m2);
-            room.area_range_m2[1] = room.area_range_m2[1].max(rooms::tenth(most));
-        }
-    }
+/// Returns the areas that the rooms of a storey are to have together, net m^2.
+pub(super) fn area_on(rooms: &[GraphRoom], level: i32) -> f64 {
+    rooms.iter().filter(|r| r.level == level).map(|r| r.target_area_m2).sum()
 }
 
 /// Scales the rooms of a storey whose areas neither the prompt nor their people fix, within what their types allow.
