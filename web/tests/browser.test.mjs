@@ -243,6 +243,9 @@ test("a rule shows while a wall is dragged, and goes with undo", { skip }, async
   await drag(page, wall, wall.upright ? { x: 90, y: 0 } : { x: 0, y: 90 }, async () => {
     await page.getByTestId("live-rule").first().waitFor({ timeout: 10_000 });
     assert.ok((await page.locator(broken).count()) > 0);
+    for (const rule of ["wall_gap", "wall_stray"]) {
+      assert.equal(await page.locator(`[data-rule-id="${rule}"]`).getAttribute("data-standing"), "held", "of the drawing, not of the plan");
+    }
   });
   await anyway(page);
   await page.locator(`${id("undo")}:not([disabled])`).waitFor();
