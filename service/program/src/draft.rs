@@ -210,17 +210,17 @@ impl<'r, 'a> Draft<'r, 'a> {
             let times = |n: i64| n.saturating_mul(storeys.above_ground() as i64);
             self.named.mentions[m].count = self.named.mentions[m].count.map(times);
         }
-        let kind = self.site.building.building_type.as_ref();
-        let kind = self.site.domain.building_types.iter().find(|b| Some(&b.id) == kind);
-        if kind.is_some_and(|b| b.attached == Some(Attached::Flat)) {
-            self.notes.assumptions.extend(storey_wishes::lie_on_one_storey(&mut storeys, self.site.domain));
-        }
         self.furnish_storeys(&mut storeys);
         storeys
     }
 
     /// Wishes for what storeys have and need.
     pub(super) fn furnish_storeys(&mut self, storeys: &mut Storeys) {
+        let kind = self.site.building.building_type.as_ref();
+        let kind = self.site.domain.building_types.iter().find(|b| Some(&b.id) == kind);
+        if kind.is_some_and(|b| b.attached == Some(Attached::Flat)) {
+            self.notes.assumptions.extend(storey_wishes::lie_on_one_storey(storeys, self.site.domain));
+        }
         let conflicts = &mut self.notes.conflicts;
         storey_wishes::furnish_basement(storeys, &mut self.wishes, self.site.domain);
         storey_wishes::wish_for_storeys(storeys, &mut self.wishes, self.site.domain, conflicts);
