@@ -62,7 +62,7 @@ fn leave_out(reading: &mut Reading, rooms: &[Planned], levels: &[i32], why: &str
     if said || !none && levels.is_empty() {
         return false;
     }
-    let what = if none { "toilet, and none for wheelchairs" } else { "toilet for wheelchairs on every storey" };
+    let what = if none { "toilet and one for wheelchairs" } else { "toilet for wheelchairs on every storey" };
     let message = format!("such a building needs a {what}; {why}, so none was added");
     reading.conflicts.push(Note::new(LEFT_OUT, message));
     true
