@@ -6,12 +6,14 @@
 
 use std::ops::Range;
 
-use d3dgen_model::brief::{Ask, Bound, Brief, Fact, RoomsAsk};
+use d3dgen_model::brief::{Ask, Bound, Brief, Fact, RoomsAsk, SiteKind};
 use d3dgen_model::domain::GENERIC_ROOM_TYPE;
 use d3dgen_model::scene_graph::Note;
 use d3dgen_plugins::Registry;
 
+use super::machines;
 use super::wishes::Facts;
+use crate::levels::storeys::Storeys;
 use crate::people::seats::Called;
 use crate::reading::{Reading, Understood};
 use crate::request::MAX_AREA_M2;
@@ -24,6 +26,8 @@ use crate::wished::wishes::{Pair, Wish};
 pub(crate) fn restore(reading: &mut Reading, brief: &Brief, registry: &Registry) {
     let facts = Facts::of(brief, reading.domain, registry);
     restore_single(reading, brief, &facts);
+    restore_site(reading, brief);
+    restore_heads(reading, brief);
     if !reading.single {
         restore_rooms(reading, brief, registry);
         restore_levels(reading, &facts);
@@ -37,6 +41,7 @@ pub(crate) fn restore(reading: &mut Reading, brief: &Brief, registry: &Registry)
             facts.seats.iter().filter(|h| wished(&h.room_type) && unseated(&h.room_type)).cloned().collect();
         reading.seats.extend(seats);
     }
+    reading.errands = machines::restored(&reading.robots, &reading.errands, brief, &facts);
     for thing in &facts.things {
         let asked = facts.things.iter().filter(|t| t.object == thing.object).count();
         let have = reading.objects.iter().filter(|t| t.object == thing.object);
@@ -48,6 +53,34 @@ pub(crate) fn restore(reading: &mut Reading, brief: &Brief, registry: &Registry)
     }
     let usable = |a: &f64| (5.0..=MAX_AREA_M2).contains(a);
     reading.area_m2 = reading.area_m2.or(facts.area_m2.filter(usable));
+}
+
+/// Takes the storey on which a flat lies in its house for no storey of the flat.
+fn restore_site(reading: &mut Reading, brief: &Brief) {
+    let inside = |a: &Ask| matches!(&a.fact, Fact::Site(s) if s.kind == SiteKind::Inside);
+    let storeys = |a: &Ask| match &a.fact {
+        Fact::Storeys(storeys) => storeys.count.n > 1 || storeys.basement,
+        Fact::Rooms(rooms) => rooms.level.is_some(),
+        _ => false,
+    };
+    if brief.asks.iter().any(inside) && !brief.asks.iter().any(storeys) {
+        reading.storeys = Storeys { levels: vec![0], ..Storeys::default() };
+    }
+}
+
+/// Takes a number that the brief says of one room for no number of people of the building.
+fn restore_heads(reading: &mut Reading, brief: &Brief) {
+    let of_room = |n: u32| brief.asks.iter().any(|a| matches!(&a.fact, Fact::Capacity(c) if c.count.n == n && c.room.is_some()));
+    let of_building = |n: u32| {
+        brief.asks.iter().any(|a| match &a.fact {
+            Fact::Capacity(c) => c.room.is_none() && c.count.n == n,
+            Fact::People(people) => people.count.n == n,
+            _ => false,
+        })
+    };
+    for heads in [&mut reading.occupancy.staff, &mut reading.occupancy.visitors] {
+        *heads = heads.filter(|n| !of_room(*n) || of_building(*n));
+    }
 }
 
 /// Takes a prompt for one room that names one and no building, whatever more it says of that room, with the sides that it gives.
