@@ -125,14 +125,20 @@ impl Maker<'_> {
     /// States rooms and more once for each storey that is named before or behind them.
     fn on_storey(&mut self, node: &Node, around: Around) {
         let items: Vec<Rc<Node>> = node.all("item").cloned().collect();
-        for level in node.all("level").cloned().collect::<Vec<_>>() {
-            for storey in self.storeys_named(&level) {
-                let from = self.facts.len();
-                for item in &items {
-                    self.state(item, Around { storey: Some(storey), ..around });
-                }
-                for stated in &mut self.facts[from..] {
-                    (stated.also, stated.storey) = (Some(level.tokens.clone()), Some(storey));
+        let levels: Vec<(Rc<Node>, Storey)> =
+            node.all("level").flat_map(|l| self.storeys_named(l).into_iter().map(|s| (l.clone(), s))).collect();
+        let storeys = levels.len() as u32;
+        for (at, (level, storey)) in levels.into_iter().enumerate() {
+            let from = self.facts.len();
+            // places have no storey: "40 desks each" on two are 80
+            let again = |item: &Rc<Node>| at > 0 && item.made() == Some("capacity");
+            for item in items.iter().filter(|i| !again(i)) {
+                self.state(item, Around { storey: Some(storey), ..around });
+            }
+            for stated in &mut self.facts[from..] {
+                (stated.also, stated.storey) = (Some(level.tokens.clone()), Some(storey));
+                if let (Fact::Capacity(capacity), Some(_)) = (&mut stated.fact, node.field("every")) {
+                    capacity.count.n = capacity.count.n.saturating_mul(storeys);
                 }
             }
         }
@@ -189,10 +195,7 @@ impl Maker<'_> {
             for id in ids.split('+') {
                 let room = Subject::known(id, self.reading.written(suite.tokens.clone()));
                 let count = count(node).unwrap_or_default();
-                self.say(
-                    node,
-                    Fact::Rooms(RoomsAsk { room, count, level: around.level(), ..RoomsAsk::default() }),
-                );
+                self.say(node, Fact::Rooms(RoomsAsk { room, count, level: around.level(), ..RoomsAsk::default() }));
             }
         }
         if node.field("suite").is_some() {
@@ -291,7 +294,9 @@ impl Maker<'_> {
         if let (Some(count), Some(with)) = (some, node.field("with").cloned()) {
             self.one_each(&with, room, count);
         }
-        for with in node.all("with_each").filter(|n| self::count(n).is_some_and(|c| c.n > 1)).cloned().collect::<Vec<_>>() {
+        for with in
+            node.all("with_each").filter(|n| self::count(n).is_some_and(|c| c.n > 1)).cloned().collect::<Vec<_>>()
+        {
             let each = self::count(&with).unwrap_or(one);
             self.one_each(&with, room, AskedCount { n: each.n.saturating_mul(count.n), ..count });
         }
@@ -443,14 +448,12 @@ impl Maker<'_> {
         if let Some(all) = all {
             let each = AskedCount { n: all.n.div_ceil(groups.unwrap_or(1).max(1)), ..all };
             let of = PlaceKind::Seats;
-            return self
-                .say(node, Fact::Capacity(CapacityAsk { of, count: each, groups, ..CapacityAsk::default() }));
+            return self.say(node, Fact::Capacity(CapacityAsk { of, count: each, groups, ..CapacityAsk::default() }));
         }
         if held.is_none() && what.is_some_and(|w| w.is("capacity", Some("group"))) {
             let (of, groups) = (PlaceKind::Seats, Some(count.n));
             let each = AskedCount::at_least(1);
-            return self
-                .say(node, Fact::Capacity(CapacityAsk { of, count: each, groups, ..CapacityAsk::default() }));
+            return self.say(node, Fact::Capacity(CapacityAsk { of, count: each, groups, ..CapacityAsk::default() }));
         }
         if what.is_some_and(|w| w.is("capacity", Some("locker"))) {
             let object = Subject::known("lockers", what.map_or("", |w| self.reading.written(w.tokens.clone())));
@@ -771,7 +774,9 @@ impl Maker<'_> {
 
 /// Returns what places are counted.
 fn places_of(held: &Node) -> Option<PlaceKind> {
-    held.values("capacity").chain(held.field("what").into_iter().flat_map(|w| w.values("capacity"))).find_map(place_kind)
+    held.values("capacity")
+        .chain(held.field("what").into_iter().flat_map(|w| w.values("capacity")))
+        .find_map(place_kind)
 }
 
 /// Returns the number that a node has, as it binds.
@@ -935,7 +940,9 @@ pub(crate) fn shown(fact: &Fact) -> String {
         Fact::Capacity(c) => {
             let groups = c.groups.map_or(String::new(), |g| format!(" in {g} groups"));
             let room = shown_within(c.room.as_ref(), c.each_room);
-            let room = c.of_rooms.map_or(room.clone(), |n| room.replace(" in ", &format!(" in {n} of ")).replace("of each ", "of "));
+            let room = c
+                .of_rooms
+                .map_or(room.clone(), |n| room.replace(" in ", &format!(" in {n} of ")).replace("of each ", "of "));
             let among = if c.among { "of " } else { "" };
             format!("capacity {} {among}{}{room}{groups}", shown_count(&c.count), named(&c.of))
         }

@@ -16,7 +16,8 @@ pub(crate) fn settled(facts: Vec<Stated>, building: Option<&AskedBuilding>) -> V
 
 /// Returns the highest storey that the facts tell of.
 fn highest(facts: &[Stated]) -> i32 {
-    let counted = facts.iter().filter_map(|f| if let Fact::Storeys(s) = &f.fact { Some(s.count.n as i32 - 1) } else { None });
+    let counted =
+        facts.iter().filter_map(|f| if let Fact::Storeys(s) = &f.fact { Some(s.count.n as i32 - 1) } else { None });
     let named = facts.iter().filter_map(|f| if let Some(Storey::At(level)) = f.storey { Some(level) } else { None });
     let above = facts.iter().any(|f| f.storey == Some(Storey::Top));
     counted.chain(named).max().unwrap_or(0).max(i32::from(above))

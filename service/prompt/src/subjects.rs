@@ -106,7 +106,8 @@ impl<'d> Known<'d> {
 
     /// Returns the object that places are: desks, beds.
     fn places(&self, node: &Node, reading: &Reading) -> Subject {
-        let id = node.field("what").into_iter().flat_map(|w| w.values("capacity")).find(|id| self.objects.contains(*id));
+        let id =
+            node.field("what").into_iter().flat_map(|w| w.values("capacity")).find(|id| self.objects.contains(*id));
         Subject { id: id.map(str::to_owned), name: reading.written(node.tokens.clone()).to_owned() }
     }
 

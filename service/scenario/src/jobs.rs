@@ -103,7 +103,9 @@ fn points_in(scenario: &Scenario, building: &PeopleBuilding, task: &RobotTask, s
 /// Returns true for a room that a name of the brief means.
 fn is_meant(domain: &Domain, room: &PeopleRoom, subject: &Subject) -> bool {
     let kind = room.kind;
-    let Some(id) = subject.id.as_deref() else { return room.plan.name.to_lowercase().contains(&subject.name.to_lowercase()) };
+    let Some(id) = subject.id.as_deref() else {
+        return room.plan.name.to_lowercase().contains(&subject.name.to_lowercase());
+    };
     let object = domain.object(id).filter(|_| domain.room_type(id).is_none());
     kind.id == id || object.is_some_and(|o| offer::has_shape(domain, kind, &[o.shape]))
 }

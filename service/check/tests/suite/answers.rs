@@ -58,7 +58,8 @@ fn facts_are_honored_where_they_hold_and_told_where_they_do_not() {
             count: exactly(n),
             room: None,
             each_room: false,
-            groups: None, ..CapacityAsk::default()
+            groups: None,
+            ..CapacityAsk::default()
         })
     };
     let cases = [
@@ -141,7 +142,8 @@ fn work_places_are_desks_and_beds_are_where_people_stay() {
             count: AskedCount::exactly(n),
             room: Some(room(room_id)),
             each_room: false,
-            groups: None, ..CapacityAsk::default()
+            groups: None,
+            ..CapacityAsk::default()
         };
         Fact::Capacity(capacity)
     };

@@ -11,7 +11,13 @@ pub(super) fn missed(brief: &Brief, graph: &SceneGraph) -> usize {
     let lost = brief.asks.iter().filter(|ask| !is_kept(&ask.fact, graph));
     let (rooms, others): (Vec<&Ask>, Vec<&Ask>) = lost.partition(|ask| matches!(ask.fact, Fact::Rooms(_)));
     // a room that was read as one of another type is one thing
-    rooms.len().max(unasked(brief, graph)) + others.len() + usize::from(is_in_the_air(graph))
+    let several = rooms.iter().filter(|ask| matches!(&ask.fact, Fact::Rooms(r) if is_lost_whole(r, graph))).count();
+    (rooms.len() + several).max(unasked(brief, graph)) + others.len() + usize::from(is_in_the_air(graph))
+}
+
+/// Returns true where not one is there of several rooms that have a name of their own.
+fn is_lost_whole(asked: &RoomsAsk, graph: &SceneGraph) -> bool {
+    asked.count.n > 1 && asked.room.id.is_none() && called(&asked.room, graph).next().is_none()
 }
 
 /// Returns true where the prompt names no room at the ground, of several storeys.
@@ -36,7 +42,10 @@ fn called<'g>(subject: &'g Subject, graph: &'g SceneGraph) -> impl Iterator<Item
     let name = subject.name.to_lowercase();
     graph.rooms.iter().filter(move |room| match &subject.id {
         Some(id) => is_kind_of(&room.room_type, id),
-        None => !name.is_empty() && (room.name.to_lowercase().starts_with(&name) || name.starts_with(&room.name.to_lowercase())),
+        None => {
+            !name.is_empty()
+                && (room.name.to_lowercase().starts_with(&name) || name.starts_with(&room.name.to_lowercase()))
+        }
     })
 }
 
@@ -50,7 +59,8 @@ fn keeps_rooms(asked: &RoomsAsk, graph: &SceneGraph) -> bool {
     let on_level = |room: &&GraphRoom| asked.level.is_none_or(|level| room.level == level);
     let all: Vec<&GraphRoom> = called(&asked.room, graph).filter(on_level).collect();
     let own = all.iter().filter(|room| asked.room.id.as_ref() == Some(&room.room_type)).count();
-    asked.count.allows(all.len() as u32) || asked.count.allows(own as u32)
+    let one_each = asked.each.as_ref().is_none_or(|each| called(each, graph).count() >= all.len());
+    one_each && (asked.count.allows(all.len() as u32) || asked.count.allows(own as u32))
 }
 
 /// Returns true where the rooms have so many places, together or each, or where the graph says nothing of places.
@@ -74,8 +84,10 @@ fn keeps_to_list(asked: &OnlyAsk, graph: &SceneGraph) -> bool {
 /// Returns how many types of rooms the prompt was read to name that the brief does not ask for, and how many storeys are more
 /// than it tells of.
 fn unasked(brief: &Brief, graph: &SceneGraph) -> usize {
-    let asked: BTreeSet<&str> = brief.asks.iter().flat_map(|ask| named_in(&ask.fact)).filter_map(|s| s.id.as_deref()).collect();
-    let is_asked = |room: &GraphRoom| asked.iter().any(|id| is_kind_of(&room.room_type, id) || is_kind_of(id, &room.room_type));
+    let asked: BTreeSet<&str> =
+        brief.asks.iter().flat_map(|ask| named_in(&ask.fact)).filter_map(|s| s.id.as_deref()).collect();
+    let is_asked =
+        |room: &GraphRoom| asked.iter().any(|id| is_kind_of(&room.room_type, id) || is_kind_of(id, &room.room_type));
     let others: BTreeSet<&str> =
         graph.rooms.iter().filter(|r| r.requested && !is_asked(r)).map(|r| r.room_type.as_str()).collect();
     let told = brief.asks.iter().any(|a| match &a.fact {

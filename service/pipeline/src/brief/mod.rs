@@ -77,9 +77,11 @@ fn has_parts(graph: &SceneGraph) -> bool {
     graph.rooms.iter().any(|r| r.unit.is_some()) || graph.assumptions.iter().any(|n| n.code == PART_PLANNED)
 }
 
-/// Returns true for graphs of one kind of building.
+/// Returns true for graphs of one kind of building, of which the first says for how many people it is where the other does.
 fn same(a: &SceneGraph, b: &SceneGraph) -> bool {
-    a.domain == b.domain && a.building_type == b.building_type
+    let told = |graph: &SceneGraph| [graph.occupancy.staff.is_some(), graph.occupancy.beds.is_some()];
+    let peopled = told(a).into_iter().zip(told(b)).all(|(own, other)| own || !other);
+    a.domain == b.domain && a.building_type == b.building_type && peopled
 }
 
 /// Makes the rooms of a brief; the flags of the request overrule it.

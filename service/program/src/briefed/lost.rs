@@ -6,8 +6,9 @@
 
 use std::ops::Range;
 
-use d3dgen_model::brief::{Ask, Bound, Brief, Fact, RoomsAsk, SiteKind};
+use d3dgen_model::brief::{Ask, Bound, Brief, CapacityAsk, Fact, RoomsAsk, SiteKind};
 use d3dgen_model::domain::GENERIC_ROOM_TYPE;
+use d3dgen_model::offer;
 use d3dgen_model::scene_graph::Note;
 use d3dgen_plugins::Registry;
 
@@ -68,9 +69,15 @@ fn restore_site(reading: &mut Reading, brief: &Brief) {
     }
 }
 
-/// Takes a number that the brief says of one room for no number of people of the building.
+/// Takes a number that the brief says of a room that nobody works in for no number of people of the building.
 fn restore_heads(reading: &mut Reading, brief: &Brief) {
-    let of_room = |n: u32| brief.asks.iter().any(|a| matches!(&a.fact, Fact::Capacity(c) if c.count.n == n && c.room.is_some()));
+    let domain = reading.domain;
+    let visited = |c: &CapacityAsk| {
+        let kind = c.room.as_ref().and_then(|room| domain.room_type(room.id.as_deref()?));
+        kind.is_some_and(|kind| !offer::works_in(domain, kind))
+    };
+    let of_room =
+        |n: u32| brief.asks.iter().any(|a| matches!(&a.fact, Fact::Capacity(c) if c.count.n == n && visited(c)));
     let of_building = |n: u32| {
         brief.asks.iter().any(|a| match &a.fact {
             Fact::Capacity(c) => c.room.is_none() && c.count.n == n,

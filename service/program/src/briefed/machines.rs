@@ -80,7 +80,12 @@ fn errand(asked: &RobotsAsk, facts: &Facts) -> robots::Errand {
 }
 
 /// Returns for each robot where the brief sends its kind; robots that it says nothing of go where they went.
-pub(super) fn restored(robots: &[Robot], errands: &[robots::Errand], brief: &Brief, facts: &Facts) -> Vec<robots::Errand> {
+pub(super) fn restored(
+    robots: &[Robot],
+    errands: &[robots::Errand],
+    brief: &Brief,
+    facts: &Facts,
+) -> Vec<robots::Errand> {
     let told: Vec<(&RobotsAsk, robots::Errand)> = asks(brief).map(|a| (a, errand(a, facts))).collect();
     let of = |(i, robot): (usize, &Robot)| {
         let own = errands.get(i).filter(|e| **e != robots::Errand::default()).cloned();
