@@ -106,6 +106,7 @@ impl Maker<'_> {
             Some("storey_ref") => self.storey_alone(node),
             Some("does" | "does_more") => self.work_of_nobody(node),
             Some("each_group") => self.each_group(node),
+            Some("each_person") => self.each_person(node),
             Some("every_room") => self.every_room(node),
             Some("fleet") => self.fleet(node),
             Some("shorthand_home") => self.shorthand(node),
@@ -137,7 +138,9 @@ impl Maker<'_> {
             }
             for stated in &mut self.facts[from..] {
                 (stated.also, stated.storey) = (Some(level.tokens.clone()), Some(storey));
-                if let (Fact::Capacity(capacity), Some(_)) = (&mut stated.fact, node.field("every")) {
+                if let (Fact::Capacity(capacity), Some(_)) = (&mut stated.fact, node.field("every"))
+                    && capacity.room.is_none()
+                {
                     capacity.count.n = capacity.count.n.saturating_mul(storeys);
                 }
             }
@@ -333,6 +336,21 @@ impl Maker<'_> {
         let room = self.subject(guest);
         self.say(guest, Fact::Rooms(RoomsAsk { room: room.clone(), count, ..RoomsAsk::default() }));
         self.say(guest, Fact::Relation(RelationAsk { a: room, relation: RelationKind::Door, b: host.clone() }));
+    }
+
+    /// States a room for each of so many people.
+    fn each_person(&mut self, node: &Node) {
+        let people: Vec<Rc<Node>> = node.all("people").cloned().collect();
+        let all = people.iter().find_map(|p| count(p));
+        for part in people.iter().chain(node.all("item")) {
+            let from = self.facts.len();
+            self.state(part, Around::default());
+            for stated in &mut self.facts[from..] {
+                if let (Fact::Rooms(rooms), Some(all)) = (&mut stated.fact, all) {
+                    rooms.count = all;
+                }
+            }
+        }
     }
 
     /// States what every room has: each of the several that were named last.
