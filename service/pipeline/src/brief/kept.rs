@@ -84,8 +84,8 @@ fn keeps_to_list(asked: &OnlyAsk, graph: &SceneGraph) -> bool {
 /// Returns how many types of rooms the prompt was read to name that the brief does not ask for, and how many storeys are more
 /// than it tells of.
 fn unasked(brief: &Brief, graph: &SceneGraph) -> usize {
-    let asked: BTreeSet<&str> =
-        brief.asks.iter().flat_map(|ask| named_in(&ask.fact)).filter_map(|s| s.id.as_deref()).collect();
+    let asked = brief.asks.iter().flat_map(|ask| named_in(&ask.fact)).filter_map(|s| s.id.as_deref());
+    let asked: BTreeSet<&str> = asked.chain(brief.asks.iter().filter_map(|a| role_of(&a.fact))).collect();
     let is_asked =
         |room: &GraphRoom| asked.iter().any(|id| is_kind_of(&room.room_type, id) || is_kind_of(id, &room.room_type));
     let others: BTreeSet<&str> =
@@ -108,4 +108,9 @@ fn named_in(fact: &Fact) -> Vec<&Subject> {
         Fact::Objects(objects) => objects.room.iter().collect(),
         _ => Vec::new(),
     }
+}
+
+/// Returns the role of people, which is the type of the room where each of them works: the exam rooms of four doctors.
+fn role_of(fact: &Fact) -> Option<&str> {
+    if let Fact::People(people) = fact { Some(&people.role) } else { None }
 }

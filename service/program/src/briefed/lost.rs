@@ -69,12 +69,12 @@ fn restore_site(reading: &mut Reading, brief: &Brief) {
     }
 }
 
-/// Takes a number that the brief says of a room that nobody works in for no number of people of the building.
+/// Takes a number that the brief says of a room without desks for no number of people of the building.
 fn restore_heads(reading: &mut Reading, brief: &Brief) {
     let domain = reading.domain;
     let visited = |c: &CapacityAsk| {
         let kind = c.room.as_ref().and_then(|room| domain.room_type(room.id.as_deref()?));
-        kind.is_some_and(|kind| !offer::works_in(domain, kind))
+        kind.is_some_and(|kind| !offer::works_in(domain, kind) && offer::desks(domain, kind).is_none())
     };
     let of_room =
         |n: u32| brief.asks.iter().any(|a| matches!(&a.fact, Fact::Capacity(c) if c.count.n == n && visited(c)));

@@ -179,6 +179,10 @@ impl<'a> Facts<'a> {
                 Fact::Objects(objects) => out.objects(objects),
                 Fact::Capacity(capacity) => out.capacity(capacity),
                 Fact::Relation(relation) => out.relation(relation),
+                // who sees people has a room for it
+                Fact::People(people) if domain.room_type(&people.role).is_some() => {
+                    out.wish(&people.role, &people.role.replace('_', " "), people.count, is_told(people.count));
+                }
                 Fact::People(people) => {
                     if lives && roles().children.contains(&people.role) {
                         out.children += people.count.n;
