@@ -2,11 +2,13 @@
 
     pip install "d3dgen[gym]"
 
+    import d3dgen.gym
     import gymnasium
     env = gymnasium.make("d3dgen/Nav-v0", prompt="ward with 8 rooms in Germany, for a delivery robot", seed=1)
     observation, info = env.reset(seed=0)
 
-Gymnasium finds the environment by itself once this package is installed. What is observed, what the actions are and when an
+Importing this module makes the environment known: Gymnasium looks for those of installed packages by itself before 1.4 only
+(entry point `gymnasium.envs`). What is observed, what the actions are and when an
 episode ends is said in `mujoco/scene.py` of the world, which is the environment; a copy of it can be changed at will.
 """
 
@@ -26,8 +28,11 @@ NAVIGATION = "d3dgen/Nav-v0"
 
 
 def register() -> None:
-    """Makes the environments known to Gymnasium; called by it for installed packages."""
-    from gymnasium.envs import registration
+    """Makes the environments known to Gymnasium, once."""
+    try:
+        from gymnasium.envs import registration
+    except ModuleNotFoundError as missing:
+        raise ModuleNotFoundError('Gymnasium is not installed: pip install "d3dgen[gym]"') from missing
 
     if NAVIGATION not in registration.registry:
         registration.register(NAVIGATION, entry_point="d3dgen.gym:navigation")
@@ -56,3 +61,6 @@ def _scene(world: World) -> Any:
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+register()

@@ -1,9 +1,9 @@
 /** A real server, a real browser, and what every test looks at afterwards: errors on the console and breaches of the policy. */
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
+import { extname, join, resolve } from "node:path";
 import { createInterface } from "node:readline";
 
 import { chromium } from "playwright-core";
@@ -14,6 +14,10 @@ const PROGRAM = resolve(process.env.D3DGEN ?? "../target/debug/d3dgen");
 export const PROMPT = "hospital ward with 8 rooms in Germany, for a delivery robot";
 
 export const executable = BROWSERS.find((path) => path && existsSync(path));
+
+/** Folder of a built page that is shown instead of the one in the program, so that a change needs no new program. */
+const PAGE = process.env.D3DGEN_PAGE;
+const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml" };
 
 /** A `d3dgen serve` with a folder of its own. */
 export class Server {
@@ -62,9 +66,24 @@ export async function opened(browser, url, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, locale: "en-US", ...options });
   const faults = [];
   await watch(context, faults);
+  if (PAGE) await context.route((address) => fileOf(address) !== undefined, show);
   const page = await context.newPage();
   await page.goto(url);
   return { context, page, faults };
+}
+
+function fileOf(address) {
+  const path = join(PAGE, address.pathname === "/" ? "index.html" : address.pathname);
+  return extname(path) in TYPES && existsSync(path) ? path : undefined;
+}
+
+/** Answers with a file of the folder, under the policy that the server sends with its own page. */
+async function show(route) {
+  const path = fileOf(new URL(route.request().url()));
+  const own = await route.fetch({ url: new URL("/", route.request().url()).href });
+  const policy = own.headers()["content-security-policy"] ?? "";
+  const headers = { "content-type": TYPES[extname(path)], "content-security-policy": policy };
+  await route.fulfill({ body: readFileSync(path), headers });
 }
 
 async function watch(context, faults) {
@@ -81,9 +100,14 @@ async function watch(context, faults) {
 export async function make(page, prompt = PROMPT) {
   await page.getByTestId("prompt").fill(prompt);
   await page.getByTestId("generate").click();
+  await built(page);
+  await saved(page);
+}
+
+/** Waits until a world is whole on the plan. */
+export async function built(page) {
   await page.getByTestId("plan-svg").waitFor({ timeout: 60_000 });
   await page.locator("progress").waitFor({ state: "detached", timeout: 120_000 });
-  await saved(page);
 }
 
 /** Waits until the server has what the page has. */

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use d3dgen_model::Point;
 use d3dgen_model::domain::{Domain, Role};
+use d3dgen_model::robot_kind::WORK_M_S;
 use d3dgen_model::scenario::{Act, Agent, Flow, PERSON_RADIUS_M, RobotTask, Scenario, Station, Step};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::world::World;
@@ -13,8 +14,6 @@ use crate::mover::{Mover, State, Task};
 use crate::routes::Link;
 use crate::space::Space;
 
-/// How fast robots drive among people, m/s (the usual limit of indoor service robots, EN 1525 and ISO 3691-4 give 0.3 to 1.2).
-const ROBOT_M_S: f64 = 0.8;
 /// Time at a corner of a way over a floor, s.
 const CORNER_S: f64 = 0.0;
 /// Time that somebody stands in a room where no step says it, s.
@@ -180,7 +179,7 @@ fn source(flow: &Flow, places: &Places, seed: u64, access: usize) -> Option<Sour
 fn robot(r: &RobotTask, scenario: &Scenario, places: &Places, spaces: &[Space], access: usize) -> Option<Mover> {
     let level = spaces.iter().position(|s| s.level == r.level)?;
     let start = Point::new(r.start.x, r.start.y);
-    let mut mover = Mover::new(r.robot_id.clone(), r.robot.kind.clone(), r.robot.radius_m, ROBOT_M_S, level, start);
+    let mut mover = Mover::new(r.robot_id.clone(), r.robot.kind.clone(), r.robot.radius_m, WORK_M_S, level, start);
     let point = |id: &String, seconds: f64, job: Option<&String>| {
         let poi = scenario.pois.iter().find(|p| &p.poi_id == id)?;
         let &(level, room) = places.rooms.get(poi.room_id.as_str())?;

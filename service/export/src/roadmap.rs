@@ -80,6 +80,11 @@ impl Ground {
         Self { occupancy, kept_out, obstacles, body }
     }
 
+    /// Returns the radius of the largest robot that the floor is for, m.
+    pub fn radius_m(&self) -> f64 {
+        self.body.radius_m
+    }
+
     /// Returns true where nothing stands and robots may be.
     fn is_open(&self, p: Point) -> bool {
         self.occupancy.frame.cell(p).is_some_and(|(i, j)| self.occupancy.free.get(i, j) && !self.kept_out.get(i, j))

@@ -9,6 +9,9 @@ use super::state::{Placed, State};
 
 /// Floor beside a dock that belongs to it, mm; as in the charging buffers of scenarios.
 const BESIDE: i32 = 500;
+/// How far before its place at a dock a robot turns towards it, mm: the staging offset of nav2's docking server,
+/// <https://docs.nav2.org/configuration/packages/configuring-docking-server.html>.
+const DRIVE_UP: i32 = 700;
 /// From the front of a dock to the middle of a robot before it, mm.
 const BERTH: i32 = 400;
 /// Floor between two robots that charge side by side, mm.
@@ -50,6 +53,14 @@ pub(crate) fn berths<'p>(p: &'p Placed) -> impl Iterator<Item = Box2> + 'p {
 pub(crate) fn buffers<'p>(p: &'p Placed, robot: i32) -> impl Iterator<Item = Box2> + 'p {
     fronts(p).map(move |(q, own, clearance)| {
         let depth = clearance.max(robot);
+        Box2 { x0: own.x0, x1: own.x1 + depth, y0: own.y0 - BESIDE, y1: own.y1 + BESIDE }.turned(q)
+    })
+}
+
+/// Returns the floor before the docks of a unit from where a robot begins to drive up to it, mm.
+pub(crate) fn approaches<'p>(p: &'p Placed, robot: i32) -> impl Iterator<Item = Box2> + 'p {
+    fronts(p).map(move |(q, own, clearance)| {
+        let depth = clearance.max(robot + DRIVE_UP);
         Box2 { x0: own.x0, x1: own.x1 + depth, y0: own.y0 - BESIDE, y1: own.y1 + BESIDE }.turned(q)
     })
 }

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use d3dgen_knowledge::clearance::HEAD_ROOM_M;
 use d3dgen_model::domain::{Mount, Shape};
 
-use super::docks::{berths, buffers};
+use super::docks::{approaches, berths, buffers};
 use super::geom::{Box2, Solid, mm, turn};
 use super::nav::Nav;
 use super::pockets::Pockets;
@@ -477,7 +477,7 @@ impl<'a, 's> State<'a, 's> {
             self.pockets.add(&p);
             self.bodies.extend(bodies(&p));
             self.in_the_way.extend(&in_the_way(std::slice::from_ref(&p)));
-            self.docks.extend(buffers(&p, self.nav.gap()));
+            self.docks.extend(approaches(&p, self.nav.gap()));
             self.berths.extend(berths(&p));
             self.beside_beds.extend(ways_beside(&p).into_iter().flatten());
             if p.support.is_none() {

@@ -8,14 +8,16 @@ use d3dgen_model::brief::{Ask, AskedTask, Brief, Fact, RobotsAsk, Subject};
 use d3dgen_model::domain::{Domain, Goods};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::offer;
-use d3dgen_model::robot_kind::{brings, cleans};
+use d3dgen_model::robot_kind::{brings, charge_s, cleans};
 use d3dgen_model::scenario::{Poi, RobotJob, RobotJobKind, RobotTask, RoiKind, Scenario};
 use serde::Deserialize;
 
 use super::people::{PeopleBuilding, PeopleRoom};
 
-/// Corners of a way over a floor at most, over all rooms.
-const MOST_CORNERS: usize = 600;
+/// Corners of a way over a floor at most, over all rooms: a scenario is read by people too.
+const MOST_CORNERS: usize = 6000;
+/// Share of a charge that a job plans with: the rest is for detours, the way from and to the dock, and age.
+const PLANNED_CHARGE: f64 = 0.5;
 /// How much of the last lane the next one covers again, as a share of the robot's width.
 const OVERLAP: f64 = 0.1;
 
@@ -70,6 +72,8 @@ pub(crate) fn add(scenario: &mut Scenario, building: &PeopleBuilding, brief: Opt
         if jobs.is_empty() {
             jobs.extend(usual_job(scenario, building, task));
         }
+        let place = |id: &str| scenario.pois.iter().find(|p| p.poi_id == id).map(|p| Point::new(p.pose.x, p.pose.y));
+        let mut jobs: Vec<RobotJob> = jobs.iter().flat_map(|job| charges(&task.robot.kind, job, place)).collect();
         let mut count: BTreeMap<&str, u32> = BTreeMap::new();
         for job in &mut jobs {
             let n = count.entry(job.kind.name()).or_default();
@@ -79,6 +83,18 @@ pub(crate) fn add(scenario: &mut Scenario, building: &PeopleBuilding, brief: Opt
         task.jobs = jobs;
     }
     scenario.robots = robots;
+}
+
+/// Returns a job as so many jobs as it takes charges of the battery of a robot of this kind.
+fn charges(kind: &str, job: &RobotJob, place: impl Fn(&str) -> Option<Point>) -> Vec<RobotJob> {
+    let needed = (job.least_seconds(place) / (PLANNED_CHARGE * charge_s(kind))).ceil().max(1.0) as usize;
+    let a_charge = |items: usize| items.div_ceil(needed).max(1);
+    if job.path.is_empty() {
+        job.to.chunks(a_charge(job.to.len())).map(|to| RobotJob { to: to.to_vec(), ..job.clone() }).collect()
+    } else {
+        let part = |path: &[Point]| RobotJob { path: path.to_vec(), ..job.clone() };
+        job.path.chunks(a_charge(job.path.len())).map(part).collect()
+    }
 }
 
 fn robots_of(ask: &Ask) -> Option<(&Ask, &RobotsAsk)> {
@@ -230,5 +246,27 @@ mod tests {
         assert_eq!(verbs.len(), all);
         assert_eq!(usual("no_such_kind").kind, RobotJobKind::Deliver);
         assert_eq!(usual("cleaning").kind, RobotJobKind::Clean);
+    }
+
+    #[test]
+    fn work_of_more_than_a_charge_is_done_in_several_jobs() {
+        let lane = |k: u32| [Point::new(0.0, f64::from(k) * 0.36), Point::new(20.0, f64::from(k) * 0.36)];
+        let path: Vec<Point> = (0..300).flat_map(lane).collect();
+        let floor = RobotJob {
+            job_id: String::new(),
+            kind: RobotJobKind::Clean,
+            what: String::new(),
+            load_kg: 0.0,
+            from: None,
+            to: vec![String::from("hall")],
+            path: path.clone(),
+            seconds: 10.0,
+            ask_id: None,
+        };
+        let nowhere = |_: &str| None;
+        assert!(floor.least_seconds(nowhere) > charge_s("cleaning"));
+        let jobs = charges("cleaning", &floor, nowhere);
+        assert!(jobs.iter().all(|j| j.least_seconds(nowhere) < charge_s("cleaning")), "{}", jobs.len());
+        assert_eq!(jobs.iter().flat_map(|j| j.path.clone()).collect::<Vec<_>>(), path, "nothing is left out");
     }
 }

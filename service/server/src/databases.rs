@@ -41,6 +41,8 @@ pub struct Databases {
 pub struct AssetSearch {
     catalog: Arc<Catalog>,
     index: AssetIndex,
+    /// How far the store was when the index was begun: it holds that and perhaps more.
+    revision: u64,
 }
 
 /// What is there after a while, and is replaced now and then.
@@ -54,9 +56,13 @@ impl<T> Slot<T> {
         Self { value: Mutex::new(None), filled: Condvar::new() }
     }
 
-    fn fill(&self, value: T) {
-        *self.value.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(value));
-        self.filled.notify_all();
+    /// Puts a value in its place, unless what is there is of a later revision: what was begun beside a change may not know it.
+    fn fill(&self, revision: fn(&T) -> u64, value: T) {
+        let mut there = self.value.lock().unwrap_or_else(PoisonError::into_inner);
+        if there.as_ref().is_none_or(|now| revision(now) <= revision(&value)) {
+            *there = Some(Arc::new(value));
+            self.filled.notify_all();
+        }
     }
 
     fn get(&self) -> Option<Arc<T>> {
@@ -126,10 +132,7 @@ impl Databases {
         for damage in &searcher.damaged {
             tracing::error!(place = damage.place, reason = damage.reason, "damaged record left out of the index");
         }
-        // beside the first answers a change may have been indexed that this one does not know
-        if self.rules_index.get().is_none_or(|now| now.revision() <= searcher.revision()) {
-            self.rules_index.fill(searcher);
-        }
+        self.rules_index.fill(Searcher::revision, searcher);
         Ok(())
     }
 
@@ -140,7 +143,7 @@ impl Databases {
     pub fn index_change(&self, change: &Change) -> Result<(), Error> {
         let Some(now) = self.rules_index.get() else { return self.index_rules() };
         match now.after(&change.domain, &self.rules.edits(change.seq)?)? {
-            Some(searcher) => self.rules_index.fill(searcher),
+            Some(searcher) => self.rules_index.fill(Searcher::revision, searcher),
             None => self.index_rules()?,
         }
         Ok(())
@@ -151,13 +154,19 @@ impl Databases {
     /// # Errors
     /// `Assets`.
     pub fn index_assets(&self, catalog: &Arc<Catalog>) -> Result<(), Error> {
+        let revision = self.shared().revision()?;
         let shelf = Shelf::new(Some(self.assets.clone()), catalog)?;
         let index = shelf.open_index(Arc::clone(&self.embedder), watch("assets"))?;
         if let Some(reason) = &index.rebuilt {
             tracing::info!(what = "assets", %reason, "index made anew");
         }
-        self.asset_index.fill(AssetSearch { catalog: Arc::clone(catalog), index });
+        self.fill_asset_index(catalog, index, revision);
         Ok(())
+    }
+
+    fn fill_asset_index(&self, catalog: &Arc<Catalog>, index: AssetIndex, revision: u64) {
+        let search = AssetSearch { catalog: Arc::clone(catalog), index, revision };
+        self.asset_index.fill(|search| search.revision, search);
     }
 
     /// Has searches find what a change of assets was about, without making the index anew where little has changed: kept
@@ -167,9 +176,10 @@ impl Databases {
     /// `Assets`.
     pub fn index_changed_assets(&self, catalog: &Arc<Catalog>, changed: &[String]) -> Result<(), Error> {
         let Some(now) = self.asset_index.get() else { return self.index_assets(catalog) };
+        let revision = self.shared().revision()?;
         let shelf = Shelf::new(Some(self.assets.clone()), catalog)?;
         match shelf.changed_index(&now.index, changed)? {
-            Some(index) => self.asset_index.fill(AssetSearch { catalog: Arc::clone(catalog), index }),
+            Some(index) => self.fill_asset_index(catalog, index, revision),
             None => self.index_assets(catalog)?,
         }
         Ok(())
@@ -228,4 +238,19 @@ fn watch(what: &'static str) -> Watch<'static> {
         _ => &|p| say("assets", p),
     };
     Watch { progress, cancel: &|| false }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Slot;
+
+    #[test]
+    fn what_was_begun_before_a_change_does_not_replace_what_knows_it() {
+        let slot: Slot<(u64, &str)> = Slot::empty();
+        for index in [(7, "with the change"), (6, "begun before it"), (7, "again")] {
+            slot.fill(|index| index.0, index);
+            assert_eq!(slot.get().unwrap().0, 7, "{index:?}");
+        }
+        assert_eq!(slot.get().unwrap().1, "again");
+    }
 }

@@ -78,6 +78,17 @@ export async function align(axis: "x" | "y") {
   if (edits.length > 0) await session.edit(edits, t("did.aligned"));
 }
 
+/** Hangs the selected door at its other side, or has it open into the room on its other side. */
+export async function turnDoor(what: "hinge" | "room") {
+  const door = world()?.floorplan?.doors.find((d) => d.doorId === session.selected[0]);
+  if (!door?.swing) return;
+  const { hingeAtStart, intoRoomId } = door.swing;
+  const other = door.roomIds.find((id) => id !== intoRoomId);
+  const swing = what === "hinge" ? { hingeAtStart: !hingeAtStart, intoRoomId } : { hingeAtStart, intoRoomId: other };
+  const updateMask = { paths: [what === "hinge" ? "swing.hinge_at_start" : "swing.into_room_id"] };
+  await session.edit([{ case: "door", value: { door: { doorId: door.doorId, swing }, updateMask } }], t("did.doorTurned"));
+}
+
 /** Pins what is selected, or frees it. */
 export async function lock(locked: boolean) {
   const value = { ids: session.selected, includeContents: true, locked };

@@ -5,10 +5,12 @@ import { createGrpcWebTransport } from "@connectrpc/connect-web";
 import { AssetService } from "../gen/d3dgen/v1/asset_service_pb";
 import { DomainService } from "../gen/d3dgen/v1/domain_service_pb";
 import { JobService } from "../gen/d3dgen/v1/job_service_pb";
+import { KnowledgeService } from "../gen/d3dgen/v1/knowledge_service_pb";
 import { LibraryService } from "../gen/d3dgen/v1/library_service_pb";
 import { ServerService } from "../gen/d3dgen/v1/server_service_pb";
 import { WorldService } from "../gen/d3dgen/v1/world_service_pb";
 import { access } from "./access.svelte";
+import { placesOf } from "./problems";
 
 /** Sends the token, and asks the person for one when the server wants another. */
 const withToken: Interceptor = (next) => async (request) => {
@@ -30,6 +32,7 @@ export const server = createClient(ServerService, transport);
 export const worlds = createClient(WorldService, transport);
 export const assets = createClient(AssetService, transport);
 export const domains = createClient(DomainService, transport);
+export const knowledge = createClient(KnowledgeService, transport);
 export const library = createClient(LibraryService, transport);
 export const jobs = createClient(JobService, transport);
 
@@ -42,8 +45,13 @@ export function isRefusal(error: unknown): boolean {
   return [Code.FailedPrecondition, Code.InvalidArgument].includes(codeOf(error));
 }
 
-/** Returns what went wrong in the server's own words. */
+/** What the server says to programs and to those who type commands; here the page offers it. */
+const ASIDES = [/^(scene_graph|floorplan|placement|scenario|world): /, /; or set allow_conflicts$/, /, or plan them with `--domain \w+`$/];
+
+/** Returns what went wrong in the server's own words, without the places of the request. */
 export function reasonOf(error: unknown): string {
   const known = ConnectError.from(error);
-  return known.rawMessage || Code[known.code];
+  const places = placesOf(error).map((place) => place.message);
+  const said = places.length > 0 ? places : [known.rawMessage || Code[known.code]];
+  return said.map((text) => ASIDES.reduce((left, aside) => left.replace(aside, ""), text)).join("\n");
 }

@@ -24,8 +24,7 @@ export async function opened(files: File[]): Promise<boolean> {
     if (!content) return await broughtPlan(files);
     const { world, report } = (await library.parseWorld({ content })).world ?? {};
     if (!world || !report) return false;
-    session.prompt = world.brief?.prompt ?? world.sceneGraph?.prompt ?? "";
-    session.push({ world, report, label: t("open.did") }, {});
+    session.takeUp({ world, report, label: t("open.did") });
     return true;
   } catch (error) {
     session.say(reasonOf(error));

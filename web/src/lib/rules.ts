@@ -1,6 +1,6 @@
 /** The verdict as rows: one for each hard rule and each constraint of the knowledge base. */
 import { type ConstraintResult, ConstraintStatus, type Report } from "../gen/d3dgen/v1/report_pb";
-import { figure, t, words } from "./texts.svelte";
+import { figure, t, unitSaid, words } from "./texts.svelte";
 import { type Broken, ofViolation } from "./world";
 
 export type Standing = "broken" | "advice" | "held" | "undecided" | "elsewhere";
@@ -21,7 +21,7 @@ const RANK: Record<Standing, number> = { broken: 0, advice: 1, held: 2, undecide
 
 /** Returns what a constraint requires, in words: `at least 1.2 m`. */
 export function required(result: ConstraintResult): string {
-  const unit = result.unit;
+  const unit = unitSaid(result.unit);
   const { requiredMin: min, requiredMax: max } = result;
   if (min !== undefined && max !== undefined && min !== max) return `${figure(min)} – ${figure(max)} ${unit}`;
   if (min !== undefined && max === min) return `${figure(min)} ${unit}`;
@@ -31,7 +31,7 @@ export function required(result: ConstraintResult): string {
 }
 
 export function ofConstraint(result: ConstraintResult): Broken {
-  const measured = result.measured === undefined ? "" : `${figure(result.measured)} ${result.unit}`;
+  const measured = result.measured === undefined ? "" : `${figure(result.measured)} ${unitSaid(result.unit)}`;
   return {
     id: result.constraintId,
     subject: result.subject,

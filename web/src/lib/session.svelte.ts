@@ -8,11 +8,14 @@ import type { Placements } from "../gen/d3dgen/v1/placements_pb";
 import { type Report, ReportSchema } from "../gen/d3dgen/v1/report_pb";
 import type { Scenario } from "../gen/d3dgen/v1/scenario_pb";
 import { type SceneGraph, SceneGraphSchema } from "../gen/d3dgen/v1/scene_graph_pb";
+import type { Brief } from "../gen/d3dgen/v1/brief_pb";
 import { type World, WorldSchema } from "../gen/d3dgen/v1/world_pb";
-import { BuildingRequestSchema, type GenerateWorldRequest, type WorldEdit } from "../gen/d3dgen/v1/world_service_pb";
+import { type BuildingRequest, BuildingRequestSchema, type GenerateWorldRequest, type WorldEdit } from "../gen/d3dgen/v1/world_service_pb";
 import { codeOf, isRefusal, library, reasonOf, worlds } from "./api";
 import { keep, kept } from "./keep";
+import { placesOf } from "./problems";
 import { type TextKey, t } from "./texts.svelte";
+import { isAsRead, wishes } from "./wishes.svelte";
 
 /** A state of the world, and what made it. */
 export interface Step {
@@ -31,7 +34,7 @@ export interface Home {
 }
 
 /** A world with its verdict and what made it. */
-type Made = Pick<Step, "world" | "report" | "label">;
+export type Made = Pick<Step, "world" | "report" | "label">;
 
 /** How far a world is that is being made. */
 interface Making {
@@ -73,6 +76,8 @@ class Session {
   prompt = $state("");
   /** What the person chose of the manner; empty for what the sentence says. */
   manner = $state({ clutter: "", space: "", layout: "", symmetry: "" });
+  /** Kind of building that the person chose; empty for what the sentence says. */
+  domainId = $state("");
   seed = $state(0);
   steps = $state.raw<Step[]>([]);
   at = $state(-1);
@@ -86,12 +91,16 @@ class Session {
   /** True when the server lets this person keep worlds. */
   canKeep = $state(false);
   notice = $state.raw<Notice | undefined>();
+  /** Part of the last request that was at fault: `building.prompt`. */
+  refused = "";
   busy = $state(false);
   /** Ids of selected rooms, walls, doors and objects. */
   selected = $state.raw<string[]>([]);
   level = $state(0);
   #stop: AbortController | undefined;
   #checking = false;
+  /** Worlds whose verdict is of rules that have changed since. */
+  #judgedBefore = new Set<World>();
   #turn: Promise<void> = Promise.resolve();
 
   /** The world with its verdict, once there is one. */
@@ -130,6 +139,7 @@ class Session {
     this.endPreview();
     this.notice = undefined;
     this.#save();
+    this.#judgeAgain().catch((error: unknown) => this.say(reasonOf(error)));
   }
 
   /** Adds a state behind the present one; what was undone is gone. */
@@ -205,6 +215,19 @@ class Session {
     }
   }
 
+  /** Takes a world that was not made of the words at hand; its own are at hand from now on. */
+  takeUp(made: Made) {
+    this.#take(made.world);
+    this.push(made, {});
+  }
+
+  #take(world: World) {
+    this.prompt = world.brief?.prompt ?? world.sceneGraph?.prompt ?? "";
+    this.selected = [];
+    this.domainId = "";
+    void wishes.take(world.brief);
+  }
+
   /** Opens a world of the server's library. */
   async open(worldId: string, home: Home = {}): Promise<boolean> {
     this.notice = undefined;
@@ -213,8 +236,7 @@ class Session {
       const { world, report } = found ?? {};
       if (!kept || !world || !report) return false;
       home.kept = kept;
-      this.prompt = world.brief?.prompt ?? world.sceneGraph?.prompt ?? "";
-      this.selected = [];
+      this.#take(world);
       this.push({ world, report, label: t("open.did") }, home, kept.revision);
       return true;
     } catch (error) {
@@ -223,25 +245,38 @@ class Session {
     }
   }
 
-  /** Makes a world of the prompt, one stage after the other; returns true when there is one. */
-  async generate(): Promise<boolean> {
-    return await this.#make(this.#asked(this.prompt, BigInt(Math.max(0, Math.trunc(this.seed || 0)))), t("made"), {});
+  /**
+   * Makes a world of the prompt, one stage after the other; returns true when there is one. What contradicts itself is
+   * refused unless it is `allowed`; where it is the request that is at fault, `refused` says which part of it.
+   */
+  async generate(allowed = false): Promise<boolean> {
+    return await this.#make(async () => ({ case: "building", value: await this.asked() }), t("made"), {}, undefined, allowed);
   }
 
-  /** Returns the start of a world of words, in the manner that the person chose. */
-  #asked(prompt: string, seed: bigint): Start {
+  /** Returns what is asked for: the words at hand with what was changed of them, in the manner and variant that were chosen. */
+  async asked(): Promise<BuildingRequest> {
+    const prompt = this.prompt.trim();
+    const seed = BigInt(Math.max(0, Math.trunc(this.seed || 0)));
+    await wishes.read(prompt);
+    return this.#building(prompt, seed, wishes.areChanged ? wishes.brief : undefined);
+  }
+
+  #building(prompt: string, seed: bigint, brief?: Brief): BuildingRequest {
     const { clutter, ...styles } = this.manner;
-    const value = { prompt, seed, clutter: clutter || undefined, styles: Object.values(styles).filter(Boolean) };
-    return { case: "building", value: create(BuildingRequestSchema, value) };
+    const value = { prompt, brief, seed, domainId: this.domainId || undefined, clutter: clutter || undefined, styles: Object.values(styles).filter(Boolean) };
+    return create(BuildingRequestSchema, value);
   }
 
   /** Returns the start of a world like another one, with another seed. */
-  #like(world: World, seed: bigint): Start {
+  async #like(world: World, seed: bigint): Promise<Start> {
     const graph = clone(SceneGraphSchema, world.sceneGraph as SceneGraph);
     graph.seed = seed;
-    const prompt = world.brief?.prompt ?? graph.prompt;
+    const { brief } = world;
+    const prompt = brief?.prompt ?? graph.prompt;
     // of words alone, the stages are free to find other rooms; what is locked needs the rooms as they are
-    return prompt && !hasLocks(world) ? this.#asked(prompt, seed) : { case: "sceneGraph", value: graph };
+    if (hasLocks(world) || (!prompt && !brief)) return { case: "sceneGraph", value: graph };
+    const isSaid = !brief || (await isAsRead(brief));
+    return { case: "building", value: this.#building(prompt, seed, isSaid ? undefined : brief) };
   }
 
   /** Furnishes a plan that the person brought, as it is; `companions` are files that it names. Returns true when there is a world. */
@@ -251,7 +286,7 @@ class Session {
       const { sceneGraph, floorplan } = await worlds.importFloorplan({ fileName, content, companions, addDoors: true });
       if (!sceneGraph || !floorplan) return false;
       this.prompt = "";
-      return await this.#make({ case: "sceneGraph", value: sceneGraph }, fileName, {}, create(WorldSchema, { sceneGraph, floorplan }));
+      return await this.#make(async () => ({ case: "sceneGraph", value: sceneGraph }), fileName, {}, create(WorldSchema, { sceneGraph, floorplan }));
     } catch (error) {
       this.say(reasonOf(error));
       return false;
@@ -263,16 +298,22 @@ class Session {
     const world = this.step?.world;
     if (!world?.sceneGraph) return;
     const seed = world.sceneGraph.seed + 1n;
-    await this.#make(this.#like(world, seed), t("another"), this.step?.home, world);
+    await this.#make(() => this.#like(world, seed), t("another"), this.step?.home, world);
+  }
+
+  /** Plans rooms that the person put otherwise; what is locked stays. Returns true when there is a world. */
+  async replan(graph: SceneGraph, label: string): Promise<boolean> {
+    return await this.#make(async () => ({ case: "sceneGraph", value: graph }), label, this.step?.home, this.step?.world);
   }
 
   /** Makes three worlds with seeds of their own to choose from. */
   async three() {
     const world = this.step?.world;
     if (!world?.sceneGraph) return;
+    const { seed } = world.sceneGraph;
     const found: Made[] = [];
     for (let more = 1n; more <= 3n && !this.#stop?.signal.aborted; more++) {
-      const step = await this.#run(this.#like(world, world.sceneGraph.seed + more), t("alternative"), world);
+      const step = await this.#run(() => this.#like(world, seed + more), t("alternative"), world);
       if (!step) break;
       found.push(step);
       this.alternatives = [...found];
@@ -285,10 +326,10 @@ class Session {
     this.push(made);
   }
 
-  async #make(start: Start, label: string, home?: Home, pinned?: World): Promise<boolean> {
+  async #make(start: () => Promise<Start>, label: string, home?: Home, pinned?: World, allowed = false): Promise<boolean> {
     this.alternatives = [];
     this.selected = [];
-    const made = await this.#run(start, label, pinned);
+    const made = await this.#run(start, label, pinned, allowed);
     if (made) {
       this.level = 0;
       this.push(made, home);
@@ -296,17 +337,19 @@ class Session {
     return made !== undefined;
   }
 
-  async #run(start: Start, label: string, pinned?: World): Promise<Made | undefined> {
+  async #run(start: () => Promise<Start>, label: string, pinned?: World, allowConflicts = false): Promise<Made | undefined> {
     this.#stop?.abort();
     const stop = new AbortController();
     this.#stop = stop;
     this.notice = undefined;
+    this.refused = "";
     const world = create(WorldSchema, {});
     this.making = { stage: "scene_graph", fraction: 0, world };
     const pins = pinned && hasLocks(pinned);
     try {
       const request = {
-        start,
+        start: await start(),
+        allowConflicts,
         pinnedFloorplan: pins ? pinned.floorplan : undefined,
         pinnedPlacements: pins ? pinned.placements : undefined,
       };
@@ -321,7 +364,10 @@ class Session {
         };
       }
     } catch (error) {
-      if (!stop.signal.aborted) this.say(reasonOf(error));
+      if (!stop.signal.aborted) {
+        this.refused = placesOf(error)[0]?.path ?? "";
+        this.say(reasonOf(error));
+      }
     } finally {
       if (this.#stop === stop) this.making = undefined;
     }
@@ -338,6 +384,23 @@ class Session {
   show(world: World) {
     this.preview = world;
     if (!this.#checking) void this.#judge();
+  }
+
+  /** Has the present state judged by the rules as they are now; the others are when somebody goes back to them. */
+  async rejudge() {
+    this.#judgedBefore = new Set(this.steps.map((step) => step.world));
+    await this.#judgeAgain();
+  }
+
+  async #judgeAgain() {
+    const step = this.step;
+    if (!step || !this.#judgedBefore.has(step.world)) return;
+    const { report } = await worlds.checkWorld({ world: step.world });
+    const at = this.steps.indexOf(step);
+    if (!report || at < 0) return;
+    this.#judgedBefore.delete(step.world);
+    this.steps = this.steps.with(at, { ...step, report });
+    this.#save();
   }
 
   async #judge() {
@@ -448,6 +511,8 @@ class Session {
       home: homes[home] ?? {},
     }));
     this.at = Math.min(last.at, this.steps.length - 1);
+    const brief = this.step?.world.brief;
+    if (brief && brief.prompt === this.prompt) void wishes.take(brief);
     return this.step !== undefined;
   }
 }

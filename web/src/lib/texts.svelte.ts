@@ -43,3 +43,14 @@ export function figure(value: number, digits = 2): string {
 export function words(id: string): string {
   return id.replaceAll("_", " ");
 }
+
+/** Returns a unit as people write it: `m^2` becomes `m²`. */
+export function unitSaid(unit: string): string {
+  return unit.replace("^2", "²").replace("^3", "³");
+}
+
+/** Returns the name of a storey. */
+export function levelName(level: number): string {
+  if (level === 0) return t("level.ground");
+  return level > 0 ? t("level.upper", { level }) : t("level.basement", { level: -level });
+}

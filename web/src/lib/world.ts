@@ -226,6 +226,22 @@ export function withDoorMoved(world: World, doorId: string, by: number): World |
   return { ...world, floorplan: { ...plan, walls, doors } };
 }
 
+/** Returns the world with a window moved along the side of its room; nothing where that side ends before. */
+export function withWindowMoved(world: World, windowId: string, by: number): World | undefined {
+  const plan = world.floorplan;
+  const window = plan?.windows.find((w) => w.windowId === windowId);
+  if (!plan || !window?.line?.start || !window.line.end) return undefined;
+  const { along } = ends(window.line);
+  const moved = (p: { xM: number; yM: number }) => ({ ...p, xM: tidy(p.xM + along.x * by), yM: tidy(p.yM + along.y * by) });
+  const line = { ...window.line, start: moved(window.line.start), end: moved(window.line.end) } as Segment;
+  const outline = corners(roomOf(world, window.roomId)?.polygon);
+  const sides = outline.map((corner, i) => [corner, outline[(i + 1) % outline.length]]);
+  const isOn = ([a, b]: P[], p: P) => Math.abs(Math.hypot(a.x - p.x, a.y - p.y) + Math.hypot(b.x - p.x, b.y - p.y) - Math.hypot(a.x - b.x, a.y - b.y)) < 1e-3;
+  const now = ends(line);
+  if (!sides.some((side) => isOn(side, now.a) && isOn(side, now.b))) return undefined;
+  return { ...world, floorplan: { ...plan, windows: plan.windows.map((w) => (w.windowId === windowId ? { ...w, line } : w)) } };
+}
+
 /** Returns where an object's edges may snap to: along x and along y, walls of its room and edges and centers of its neighbors. */
 export function snapLines(world: World, id: string): { x: number[]; y: number[] } {
   const object = objectOf(world, id);

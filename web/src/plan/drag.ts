@@ -1,9 +1,10 @@
 /** What happens while something is dragged: where it goes, what it snaps to, and the edit that it comes to. */
+import type { Segment } from "../gen/d3dgen/v1/floorplan_pb";
 import type { World } from "../gen/d3dgen/v1/world_pb";
-import { areaOf, boundsOf, corners, ends, footprint, onStep, type P, reach, STEP, tidy } from "../lib/geometry";
+import { areaOf, boundsOf, corners, ends, footprint, inside, onStep, type P, reach, STEP, tidy } from "../lib/geometry";
 import type { EditInit } from "../lib/session.svelte";
 import { t } from "../lib/texts.svelte";
-import { nameOf, objectOf, roomOf, snapLines, withDoorMoved, withMoved, withWallMoved } from "../lib/world";
+import { nameOf, objectOf, roomOf, snapLines, withDoorMoved, withMoved, withWallMoved, withWindowMoved } from "../lib/world";
 
 /** A wall stops before a room has less floor than this, m2. */
 const LEAST = 0.3;
@@ -134,30 +135,66 @@ export function ofWall(world: World, wallId: string): Drag {
   };
 }
 
-export function ofDoor(world: World, doorId: string): Drag {
-  const door = world.floorplan?.doors.find((d) => d.doorId === doorId);
-  const line = ends(door?.line);
+/** A door or a window in its wall. */
+interface Opening {
+  id: string;
+  label: string;
+  /** A room at whose side it is. */
+  roomId: string;
+  lineIn(world: World): Segment | undefined;
+  /** Returns the world with it moved along its line by so much, m; nothing where it cannot go so far. */
+  moved(by: number): World | undefined;
+}
+
+function ofOpening(world: World, opening: Opening): Drag {
+  const line = ends(opening.lineIn(world));
   return {
     to(by) {
       const wished = onStep(by.x * line.along.x + by.y * line.along.y);
       let moved: World | undefined;
       // as far as there is wall
-      for (let left = Math.abs(wished); !moved && left > STEP / 2; left -= STEP) {
-        moved = withDoorMoved(world, doorId, Math.sign(wished) * left);
-      }
+      for (let left = Math.abs(wished); !moved && left > STEP / 2; left -= STEP) moved = opening.moved(Math.sign(wished) * left);
       if (!moved) return undefined;
-      const now = ends(moved.floorplan?.doors.find((d) => d.doorId === doorId)?.line);
-      const net = corners(roomOf(world, door?.roomIds[0] ?? "")?.polygon);
+      const now = ends(opening.lineIn(moved));
+      const outline = corners(roomOf(world, opening.roomId)?.polygon);
       const dimensions = [-1, 1].flatMap((sign): Dimension[] => {
         const from = sign < 0 ? now.a : now.b;
-        const inward = { x: from.x + now.across.x * 0.01, y: from.y + now.across.y * 0.01 };
-        const far = reach(net, inward, now.along.x * sign, now.along.y * sign);
+        const far = besideOf(outline, from, now.across, { x: now.along.x * sign, y: now.along.y * sign });
         return far === undefined ? [] : [{ from, to: { x: from.x + now.along.x * sign * far, y: from.y + now.along.y * sign * far } }];
       });
       const east = line.along.x > 1e-3 || (Math.abs(line.along.x) <= 1e-3 && line.along.y > 0) ? 1 : -1;
       const byM = tidy(((now.a.x - line.a.x) * line.along.x + (now.a.y - line.a.y) * line.along.y) * east);
-      const edits: EditInit[] = [{ case: "movedOpening", value: { openingId: doorId, byM } }];
-      return { world: moved, guides: [], dimensions, label: t("did.door"), edits };
+      const edits: EditInit[] = [{ case: "movedOpening", value: { openingId: opening.id, byM } }];
+      return { world: moved, guides: [], dimensions, label: opening.label, edits };
     },
   };
+}
+
+/** Returns how much wall is beside the end of an opening in a direction, m; the room may be on either side. */
+function besideOf(outline: P[], from: P, across: P, along: P): number | undefined {
+  const [left, right] = [1, -1].map((side) => ({ x: from.x + across.x * 0.01 * side, y: from.y + across.y * 0.01 * side }));
+  const inward = inside(outline, left) ? left : right;
+  return reach(outline, inward, along.x, along.y);
+}
+
+export function ofDoor(world: World, doorId: string): Drag {
+  const doorIn = (w: World) => w.floorplan?.doors.find((d) => d.doorId === doorId);
+  return ofOpening(world, {
+    id: doorId,
+    label: t("did.door"),
+    roomId: doorIn(world)?.roomIds[0] ?? "",
+    lineIn: (w) => doorIn(w)?.line,
+    moved: (by) => withDoorMoved(world, doorId, by),
+  });
+}
+
+export function ofWindow(world: World, windowId: string): Drag {
+  const windowIn = (w: World) => w.floorplan?.windows.find((one) => one.windowId === windowId);
+  return ofOpening(world, {
+    id: windowId,
+    label: t("did.window"),
+    roomId: windowIn(world)?.roomId ?? "",
+    lineIn: (w) => windowIn(w)?.line,
+    moved: (by) => withWindowMoved(world, windowId, by),
+  });
 }

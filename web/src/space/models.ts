@@ -1,24 +1,51 @@
 /** Models of the server's assets, asked for once each. */
-import { Box3, Group, type Object3D, Vector3 } from "three";
+import { Box3, Group, type Object3D, Quaternion, Vector3 } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
 import type { Placement } from "../gen/d3dgen/v1/placements_pb";
 import { assets } from "../lib/api";
 import { unzipped } from "../lib/zip";
 
+/** A part of a thing that moves: a drawer, a door, a seat that turns. */
+export interface MovingPart {
+  name: string;
+  /** Puts the part where it is when it is so far open, 0 to 1. */
+  set(open: number): void;
+}
+
+/** What a model says of a part that moves; its axis is that of the model's own frame. */
+interface ModelJoint {
+  name: string;
+  kind: "revolute" | "prismatic" | "continuous";
+  axis: [number, number, number];
+  limits_rad?: [number, number];
+  limits_m?: [number, number];
+}
+
+/** How far a part turns that has no limits, rad. */
+const TURN = Math.PI;
 /** Models on their way at a time. */
 const TOGETHER = 4;
 const known = new Map<string, Promise<Object3D | undefined>>();
 const loader = new GLTFLoader();
 
+/** Turn that brings the front of a model to where a thing's front is, x, by the axis that it is at; without a front, as models made here. */
+const FRONTS: Record<string, number> = { "+x": 0, "-y": Math.PI / 2, "-x": Math.PI, "+y": -Math.PI / 2, xy: Math.PI / 2 };
+
 async function load(assetId: string): Promise<Object3D | undefined> {
   const pieces: Uint8Array<ArrayBuffer>[] = [];
-  for await (const { chunk } of assets.downloadAsset({ assetId, formats: ["glb"] })) pieces.push(new Uint8Array(chunk));
-  const glb = await unzipped(await new Blob(pieces).arrayBuffer(), (path) => path.endsWith(".glb"));
-  if (!glb) return undefined;
+  for await (const { chunk } of assets.downloadAsset({ assetId, formats: ["glb", "json"] })) pieces.push(new Uint8Array(chunk));
+  const archive = await new Blob(pieces).arrayBuffer();
+  const glb = await unzipped(archive, (path) => path.endsWith(".glb"));
+  const annotation = await unzipped(archive, (path) => path.endsWith(".json"));
+  if (!glb || !annotation) return undefined;
+  const { front } = JSON.parse(new TextDecoder().decode(annotation)) as { front: { axis: string } };
   const { scene } = await loader.parseAsync(glb.slice().buffer, "");
   scene.rotation.x = Math.PI / 2; // glTF has y up
-  return scene;
+  const turned = new Group();
+  turned.rotation.z = FRONTS[front.axis] ?? FRONTS["-y"];
+  turned.add(scene);
+  return turned;
 }
 
 function model(assetId: string): Promise<Object3D | undefined> {
@@ -45,11 +72,35 @@ function fitted(original: Object3D, placement: Placement): Group {
   return inner;
 }
 
-/** Puts models in place of boxes, one kind after the other; `changed` is called for each. */
+/** Returns the joint of a part of a model, where it has one. */
+export const jointOf = (part: Object3D): ModelJoint | undefined => part.userData.joint as ModelJoint | undefined;
+
+/** Returns the parts of a model that move. */
+export function movingParts(model: Object3D): MovingPart[] {
+  const found: MovingPart[] = [];
+  model.traverse((part) => {
+    const joint = jointOf(part);
+    if (!joint) return;
+    const axis = new Vector3(...joint.axis);
+    const shut = { at: part.position.clone(), turn: part.quaternion.clone() };
+    const [low, high] = joint.limits_rad ?? joint.limits_m ?? [0, TURN];
+    // what can go both ways goes the longer one
+    const far = Math.abs(low) > Math.abs(high) ? low : high;
+    const slides = joint.kind === "prismatic";
+    const set = (open: number) => {
+      if (slides) part.position.copy(shut.at).addScaledVector(axis, open * far);
+      else part.quaternion.copy(shut.turn).multiply(new Quaternion().setFromAxisAngle(axis, open * far));
+    };
+    found.push({ name: joint.name, set });
+  });
+  return found;
+}
+
+/** Puts models in place of boxes, one kind after the other; `changed` is called for each kind with the things of it. */
 export async function furnish(
   bodies: Map<string, Group>,
   placements: Placement[],
-  changed: () => void,
+  changed: (placementIds: string[]) => void,
   isOver: () => boolean,
 ) {
   const byAsset = Map.groupBy(
@@ -67,7 +118,7 @@ export async function furnish(
         body?.clear();
         body?.add(fitted(found, placement));
       }
-      changed();
+      changed(all.map((placement) => placement.placementId));
     }
   };
   await Promise.all(Array.from({ length: TOGETHER }, work));

@@ -21,7 +21,9 @@ import { acceleratedRaycast, MeshBVH } from "three-mesh-bvh";
 
 import type { World } from "../gen/d3dgen/v1/world_pb";
 import { type Bodies, bodiesOf } from "./build";
-import { furnish } from "./models";
+import { corners, inside, reach } from "../lib/geometry";
+import { objectOf, roomOf } from "../lib/world";
+import { furnish, jointOf, movingParts } from "./models";
 
 Mesh.prototype.raycast = acceleratedRaycast;
 
@@ -30,6 +32,8 @@ const EYES = 1.6;
 const WALKER = { radius: 0.22, speed: 1.6, knees: 0.35 };
 /** How long a door takes to open, s, and how near who walks has to be, m. */
 const DOOR = { time: 0.5, near: 1.4 };
+/** From where a single thing is looked at: so far before its front, and so many of its own lengths more, so high above its middle, m. */
+const LOOK = { near: 0.5, lengths: 1.4, above: 0.7 };
 const LIGHTS = 12;
 const SKY = { day: "#dfe9ee", night: "#10151c" };
 const WAYS: Record<string, [number, number]> = {
@@ -48,7 +52,18 @@ export interface Picked {
   objectId?: string;
   doorId?: string;
   roomId?: string;
+  /** Name of the part of the object that moves. */
+  part?: string;
 }
+
+/** Something that opens: a leaf of a door, or a part of a thing. */
+interface Opening {
+  /** Id of the door, or of the thing and its part; leaves of one door share it. */
+  id: string;
+  set(open: number): void;
+}
+
+const partId = (placementId: string, part: string) => `${placementId}/${part}`;
 
 export class SpaceView {
   #renderer: WebGLRenderer;
@@ -57,6 +72,8 @@ export class SpaceView {
   #controls: OrbitControls;
   #bodies: Bodies | undefined;
   #collider: MeshBVH | undefined;
+  #openings: Opening[] = [];
+  /** How far each opening is, and is to be, by its id. */
   #open = new Map<string, { now: number; wished: number }>();
   #keys = new Set<string>();
   #walking = false;
@@ -72,8 +89,10 @@ export class SpaceView {
   #lamps: PointLight[] = [];
   #resize: ResizeObserver;
 
-  /** Called when a door begins to open or shut, with the number of those that are to be open. */
-  ondoors: (count: number) => void = () => {};
+  /** Called when something begins to open or shut, with the ids of all that is to be open. */
+  onopen: (ids: string[]) => void = () => {};
+  /** Called when models have come, whose parts can be moved from now on. */
+  onmodels: () => void = () => {};
 
   /**
    * Puts a canvas into an element.
@@ -110,7 +129,8 @@ export class SpaceView {
       solid.boundsTree = collider;
       this.#collider = collider;
     }
-    for (const leaf of bodies.leaves) leaf.set(this.#open.get(leaf.doorId)?.now ?? 0);
+    this.#openings = [];
+    this.#adopt(bodies.leaves.map((leaf) => ({ id: leaf.doorId, set: leaf.set })));
     this.#lamps = bodies.floors.slice(0, LIGHTS).map(({ at, height }) => {
       const lamp = new PointLight("#ffd9a0", 0, 9, 1.6);
       lamp.position.set(at.x, at.y, height - 0.2);
@@ -122,7 +142,49 @@ export class SpaceView {
     if (first) this.whole();
     this.#ask();
     const isOver = () => this.#over || this.#bodies !== bodies;
-    void furnish(bodies.objects, world.placements?.placements ?? [], () => this.#ask(), isOver);
+    const furnished = (placementIds: string[]) => {
+      for (const id of placementIds) {
+        const parts = movingParts(bodies.objects.get(id) as Object3D);
+        this.#adopt(parts.map((part) => ({ id: partId(id, part.name), set: part.set })));
+      }
+      this.onmodels();
+      this.#ask();
+    };
+    void furnish(bodies.objects, world.placements?.placements ?? [], furnished, isOver);
+  }
+
+  /** Takes openings in, as far open as they were. */
+  #adopt(openings: Opening[]) {
+    for (const opening of openings) opening.set(this.#open.get(opening.id)?.now ?? 0);
+    this.#openings.push(...openings);
+  }
+
+  /** Returns the names of the parts of a thing that move, once its model is there. */
+  partsOf(placementId: string): string[] {
+    const start = partId(placementId, "");
+    return this.#openings.filter((o) => o.id.startsWith(start)).map((o) => o.id.slice(start.length));
+  }
+
+  /** Looks at a thing from its front, from inside of its room. */
+  lookAt(world: World, placementId: string) {
+    const object = objectOf(world, placementId);
+    const pose = object?.pose;
+    if (!object || !pose) return;
+    const net = corners(roomOf(world, object.roomId)?.netPolygon);
+    const [dx, dy] = [Math.cos(pose.yawRad), Math.sin(pose.yawRad)];
+    const at = { x: pose.xM, y: pose.yM };
+    const { widthM = 1, depthM = 1, heightM = 1 } = object.sizeM ?? {};
+    const wished = LOOK.near + LOOK.lengths * Math.max(widthM, depthM, heightM);
+    const free = inside(net, at) ? (reach(net, at, dx, dy) ?? wished) - 0.1 : wished;
+    const far = Math.max(LOOK.near, Math.min(wished, free));
+    const middle = pose.zM + heightM / 2;
+    this.#walking = false;
+    this.#controls.enabled = true;
+    this.#overhead(true);
+    this.#controls.target.set(at.x, at.y, middle);
+    this.#camera.position.set(at.x + dx * far, at.y + dy * far, middle + LOOK.above);
+    this.#controls.update();
+    this.#ask();
   }
 
   #night = false;
@@ -190,8 +252,12 @@ export class SpaceView {
 
   /** Opens a door, or shuts it when it is open. */
   toggle(doorId: string) {
-    const state = this.#open.get(doorId) ?? { now: 0, wished: 0 };
-    this.#wish(doorId, state.wished > 0.5 ? 0 : 1);
+    this.#wish(doorId, (this.#open.get(doorId)?.wished ?? 0) > 0.5 ? 0 : 1);
+  }
+
+  /** Opens a part of a thing, or shuts it when it is open. */
+  togglePart(placementId: string, part: string) {
+    this.toggle(partId(placementId, part));
   }
 
   /** Opens all doors, or shuts them. */
@@ -199,11 +265,11 @@ export class SpaceView {
     for (const leaf of this.#bodies?.leaves ?? []) this.#wish(leaf.doorId, open ? 1 : 0);
   }
 
-  #wish(doorId: string, wished: number) {
-    const state = this.#open.get(doorId);
+  #wish(id: string, wished: number) {
+    const state = this.#open.get(id);
     if ((state?.wished ?? 0) === wished) return;
-    this.#open.set(doorId, { now: state?.now ?? 0, wished });
-    this.ondoors([...this.#open.values()].filter((s) => s.wished > 0.5).length);
+    this.#open.set(id, { now: state?.now ?? 0, wished });
+    this.onopen([...this.#open].filter(([, s]) => s.wished > 0.5).map(([open]) => open));
     this.#ask();
   }
 
@@ -212,9 +278,11 @@ export class SpaceView {
     const ray = new Raycaster();
     ray.setFromCamera(new Vector2(x * 2 - 1, 1 - y * 2), this.#camera);
     const hits: Intersection[] = this.#bodies ? ray.intersectObject(this.#bodies.root, true) : [];
+    let part: string | undefined;
     for (let object: Object3D | null = hits[0]?.object ?? null; object; object = object.parent) {
       const { objectId, doorId, roomId } = object.userData as Picked;
-      if (objectId || doorId || roomId) return { objectId, doorId, roomId };
+      if (objectId || doorId || roomId) return { objectId, doorId, roomId, part };
+      part ??= jointOf(object)?.name;
     }
     return undefined;
   }
@@ -300,20 +368,16 @@ export class SpaceView {
     return next > WALKER.radius || next > far(from);
   }
 
-  /** Moves leaves towards where they are to be; returns true while some move. */
+  /** Moves what opens towards where it is to be; returns true while some moves. */
   #swing(passed: number): boolean {
     let moves = false;
-    for (const leaf of this.#bodies?.leaves ?? []) {
-      const state = this.#open.get(leaf.doorId);
-      if (!state || state.now === state.wished) continue;
-      leaf.set(state.now);
-      moves = true;
-    }
     for (const state of this.#open.values()) {
-      const by = Math.sign(state.wished - state.now) * (passed / DOOR.time);
-      state.now = Math.abs(state.wished - state.now) <= Math.abs(by) ? state.wished : state.now + by;
+      const left = state.wished - state.now;
+      const by = passed / DOOR.time;
+      moves ||= left !== 0;
+      state.now = Math.abs(left) <= by ? state.wished : state.now + Math.sign(left) * by;
     }
-    for (const leaf of this.#bodies?.leaves ?? []) leaf.set(this.#open.get(leaf.doorId)?.now ?? 0);
+    if (moves) for (const opening of this.#openings) opening.set(this.#open.get(opening.id)?.now ?? 0);
     return moves;
   }
 }

@@ -132,7 +132,7 @@ pub const RULES: &[Rule] = &[
     whole("person_access", "nobody goes to rooms that are closed to them", people::access),
     rule("person_station", "what people use affords it and can be stood before", people::stations),
     whole("person_pace", "people walk as fast, and in groups as large, as people do", people::pace),
-    rule("robot_job", "what robots are to do is at points that they get to", people::jobs),
+    rule("robot_job", "what robots are to do is at points that they get to, and done with one charge", people::jobs),
     rule("region_outside", "regions of the scenario lie in their room", robots::regions),
 ];
 

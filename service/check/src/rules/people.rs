@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use d3dgen_model::domain::{RoleKind, VISITORS_NEVER};
 use d3dgen_model::scenario::{Agent, Flow, GROUP_SIZES, PERSON_RADIUS_M, Step, WALKING_SPEEDS_M_S};
-use d3dgen_model::{Point, Pose};
+use d3dgen_model::{Point, Pose, robot_kind};
 
 use super::Findings;
 use crate::context::Context;
@@ -103,11 +103,20 @@ pub fn pace(c: &Context, out: &mut Findings) {
     }
 }
 
-/// What robots are to do is at points that they get to.
+/// What robots are to do is at points that they get to, and done with one charge of the battery.
 pub fn jobs(c: &Context, out: &mut Findings) {
-    for robot in &c.world.scenario.robots {
+    let scenario = &c.world.scenario;
+    let place = |id: &str| scenario.pois.iter().find(|p| p.poi_id == id).map(|p| point(&p.pose));
+    for robot in &scenario.robots {
         out.look();
+        let charge = robot_kind::charge_s(&robot.robot.kind);
         for job in &robot.jobs {
+            let needed = job.least_seconds(place);
+            if needed > charge {
+                let minutes = |s: f64| (s / 60.0).ceil();
+                let message = format!("takes {} minutes, a charge lasts {}", minutes(needed), minutes(charge));
+                out.add(format!("{}|{}", robot.robot_id, job.job_id), message);
+            }
             let ends = job.from.iter().chain(&job.to);
             for end in ends.filter(|id| !robot.goals.contains(id) && robot.dock.as_ref() != Some(id)) {
                 out.add(format!("{}|{}", robot.robot_id, job.job_id), format!("`{end}` is none of its goals"));

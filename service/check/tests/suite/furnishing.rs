@@ -262,6 +262,14 @@ pub(super) const BREAKS: &[Break] = &[
             Some(format!("{}|{}", robot.robot_id, robot.jobs[0].job_id))
         })
     }),
+    somewhere("robot_job", &[], |s| {
+        each(s, 0..s.world.scenario.robots.len(), |w, i| {
+            let robot = &mut w.scenario.robots[i];
+            let job = robot.jobs.iter_mut().find(|j| j.path.is_empty() && !j.to.is_empty())?;
+            job.seconds = 100_000.0; // longer than any battery lasts
+            Some(format!("{}|{}", robot.robot_id, job.job_id))
+        })
+    }),
     somewhere("pose_taken", &["robot_stuck"], |s| {
         each(s, 0..s.world.scenario.pois.len(), |w, i| {
             w.scenario.pois[i].pose.x += 500.0;

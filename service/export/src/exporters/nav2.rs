@@ -175,7 +175,7 @@ fn docks(storey: &World, ground: &Ground) -> Option<Value> {
     (!docks.is_empty()).then(|| json!({"docks": docks}))
 }
 
-/// Returns the heading in which a robot drives up to a dock, rad: from where it has room to turn.
+/// Returns the heading in which a robot drives up to a dock, rad: from where the largest robot has room to turn.
 fn approach(pose: &Pose, ground: &Ground) -> Option<f64> {
     use std::f64::consts::{PI, TAU};
     let at = Point::new(pose.x, pose.y);
@@ -188,7 +188,7 @@ fn approach(pose: &Pose, ground: &Ground) -> Option<f64> {
     headings
         .into_iter()
         .map(|yaw| (clear(&yaw), yaw))
-        .filter(|(c, _)| *c > 0.0)
+        .filter(|(c, _)| *c >= ground.radius_m())
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|b| b.1)
 }

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::{Point, Pose};
+use crate::robot_kind::WORK_M_S;
 
 /// Slowest and fastest that people walk in buildings, m/s: means are 0.9 to 1.5 by age (Bohannon & Andrews 2011), free speeds
 /// 1.34 with a deviation of 0.26 (Weidmann 1993), and 0.4 to 0.8 with walking aids (Boyce et al. 1999).
@@ -142,6 +143,11 @@ pub struct Itinerary {
 }
 
 impl Flow {
+    /// Returns how many people of it come in a second.
+    pub fn people_per_s(&self) -> f64 {
+        self.per_min / 60.0 * f64::from(self.group[0] + self.group[1]) / 2.0
+    }
+
     /// Returns the steps of all its itineraries.
     pub fn steps(&self) -> impl Iterator<Item = &Step> {
         self.itineraries.iter().flat_map(|i| &i.steps)
@@ -176,6 +182,17 @@ pub struct RobotJob {
     /// Ids of the words of the brief that ask for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ask_id: Option<String>,
+}
+
+impl RobotJob {
+    /// Returns the least time that it takes, s: straight from point to point, with the time at each. Points that `pose` does not
+    /// know are left out.
+    pub fn least_seconds(&self, pose: impl Fn(&str) -> Option<Point>) -> f64 {
+        let stops: Vec<Point> = self.from.iter().chain(&self.to).filter_map(|id| pose(id)).collect();
+        let (way, stays) = if self.path.is_empty() { (&stops, stops.len()) } else { (&self.path, 0) };
+        let length: f64 = way.windows(2).map(|w| w[0].distance(w[1])).sum();
+        length / WORK_M_S + self.seconds * stays as f64
+    }
 }
 
 /// Kind of a robot's work.

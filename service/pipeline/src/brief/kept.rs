@@ -84,12 +84,14 @@ fn keeps_to_list(asked: &OnlyAsk, graph: &SceneGraph) -> bool {
 /// Returns how many types of rooms the prompt was read to name that the brief does not ask for, and how many storeys are more
 /// than it tells of.
 fn unasked(brief: &Brief, graph: &SceneGraph) -> usize {
-    let asked = brief.asks.iter().flat_map(|ask| named_in(&ask.fact)).filter_map(|s| s.id.as_deref());
-    let asked: BTreeSet<&str> = asked.chain(brief.asks.iter().filter_map(|a| role_of(&a.fact))).collect();
+    let asked: BTreeSet<&str> =
+        brief.asks.iter().flat_map(|ask| named_in(&ask.fact)).filter_map(|s| s.id.as_deref()).collect();
     let is_asked =
         |room: &GraphRoom| asked.iter().any(|id| is_kind_of(&room.room_type, id) || is_kind_of(id, &room.room_type));
-    let others: BTreeSet<&str> =
-        graph.rooms.iter().filter(|r| r.requested && !is_asked(r)).map(|r| r.room_type.as_str()).collect();
+    // rooms may be for those who are there, and none of the facts names them
+    let peopled = brief.asks.iter().any(|a| matches!(a.fact, Fact::People(_)));
+    let others = graph.rooms.iter().filter(|r| !peopled && r.requested && !is_asked(r));
+    let others: BTreeSet<&str> = others.map(|r| r.room_type.as_str()).collect();
     let told = brief.asks.iter().any(|a| match &a.fact {
         Fact::Storeys(_) => true,
         Fact::Rooms(rooms) => rooms.level.is_some(),
@@ -108,9 +110,4 @@ fn named_in(fact: &Fact) -> Vec<&Subject> {
         Fact::Objects(objects) => objects.room.iter().collect(),
         _ => Vec::new(),
     }
-}
-
-/// Returns the role of people, which is the type of the room where each of them works: the exam rooms of four doctors.
-fn role_of(fact: &Fact) -> Option<&str> {
-    if let Fact::People(people) = fact { Some(&people.role) } else { None }
 }

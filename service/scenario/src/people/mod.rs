@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use d3dgen_model::domain::{Counted, Domain, Role, RoleKind, Round, is_named};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::hours::Hour;
-use d3dgen_model::scenario::{Agent, Flow, Itinerary, Scenario, Station, Step};
+use d3dgen_model::scenario::{Act, Agent, Flow, Itinerary, Scenario, Station, Step};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
 use d3dgen_model::{Point, Pose};
@@ -29,6 +29,8 @@ const MOST_PEOPLE: usize = 400;
 const MOST_ITINERARIES: u32 = 8;
 /// Rooms that a person's list of waypoints names at most.
 const MOST_WAYPOINTS: usize = 8;
+/// Share of the time that a counter is busy at most: near 1 the line before it grows beyond any floor (Erlang's waiting formula).
+const BUSIEST: f64 = 0.8;
 /// Fewest people of a flow in the building at a time.
 const LEAST_IN_FLOW: u32 = 2;
 
@@ -73,11 +75,38 @@ pub(crate) fn fill(scenario: &mut Scenario, graph: &SceneGraph, plan: &Floorplan
             flows.extend(flow(&scene, &mut writer, (role, round, k), counts[i], &known).map(|f| (i, f)));
         }
     }
+    let stations: Vec<&Station> = writer.stations().collect();
+    serve(flows.iter_mut().map(|(_, flow)| flow).collect(), &stations);
     agents.sort_by_key(|(i, _)| *i);
     flows.sort_by_key(|(i, _)| *i);
     scenario.agents = agents.into_iter().map(|(_, a)| a).collect();
     scenario.flows = flows.into_iter().map(|(_, f)| f).collect();
     scenario.stations = used(&writer, &scenario.agents, &scenario.flows);
+}
+
+/// Has no more people come than the counters that they line up at serve: with more, lines grow without end.
+fn serve(flows: Vec<&mut Flow>, stations: &[&Station]) {
+    let mut loads: BTreeMap<String, f64> = BTreeMap::new();
+    for flow in &flows {
+        for step in flow.steps().filter(|s| s.act == Act::Queue) {
+            *loads.entry(step.room_id.clone()).or_default() +=
+                flow.people_per_s() * step.seconds / flow.itineraries.len() as f64;
+        }
+    }
+    let counters = |room: &str| stations.iter().filter(|s| s.act == Act::Queue && s.room_id == room).count();
+    // where nobody serves there is no line either
+    let shares = loads.into_iter().map(|(room, load)| (counters(&room) as f64 * BUSIEST / load, room));
+    let shares: BTreeMap<String, f64> =
+        shares.filter(|(share, _)| *share > 0.0).map(|(share, room)| (room, share)).collect();
+    for flow in flows {
+        let share = flow.steps().filter(|s| s.act == Act::Queue).filter_map(|s| shares.get(&s.room_id)).copied();
+        flow.per_min = rate(flow.per_min * share.fold(1.0, f64::min));
+    }
+}
+
+/// Returns a rate as it is written.
+fn rate(per_min: f64) -> f64 {
+    (per_min * 1000.0).round() / 1000.0
 }
 
 /// Returns the stations that steps name, and all of the rooms and acts of steps that take what is free.
@@ -236,7 +265,7 @@ fn flow(
         door_id: door.to_owned(),
         room_id: room_id.to_owned(),
         pose: at,
-        per_min: (per_h / 60.0 * 1000.0).round() / 1000.0,
+        per_min: rate(per_h / 60.0),
         most: (2 * count).max(LEAST_IN_FLOW).max(round.group[1]),
         group: round.group,
         itineraries,
@@ -251,6 +280,58 @@ fn facing(from: Point, to: Point) -> Pose {
 }
 
 pub(crate) use ground::{Building as PeopleBuilding, Room as PeopleRoom};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn queue(room: &str, seconds: f64) -> Step {
+        let pose = Pose { x: 0.0, y: 0.0, z: 0.0, yaw_rad: 0.0 };
+        Step { room_id: room.to_owned(), act: Act::Queue, pose, seconds, station: None, with: None }
+    }
+
+    fn flow(room: &str, per_min: f64, seconds: f64) -> Flow {
+        Flow {
+            flow_id: format!("{room}_flow"),
+            role: String::from("traveller"),
+            model: String::new(),
+            speed_m_s: 1.3,
+            door_id: String::from("door_1"),
+            room_id: String::from("hall"),
+            pose: queue(room, 0.0).pose,
+            per_min,
+            most: 80,
+            group: [1, 3],
+            itineraries: vec![Itinerary { steps: vec![queue(room, seconds)] }, Itinerary { steps: Vec::new() }],
+        }
+    }
+
+    #[test]
+    fn no_more_people_come_than_counters_serve() {
+        let counter = |n: u32| Station {
+            station_id: format!("counter_{n}"),
+            room_id: String::from("check_in"),
+            placement_id: String::from("counter"),
+            act: Act::Queue,
+            before: queue("check_in", 0.0).pose,
+            at: queue("check_in", 0.0).pose,
+            queue: vec![Point::new(0.0, 1.0)],
+        };
+        let counters = [counter(1), counter(2)];
+        let stations: Vec<&Station> = counters.iter().collect();
+        // 12 groups of two a minute, every second one of which takes a counter for 30 s a person: 6 counters' work
+        let (mut crowd, mut few, mut elsewhere) =
+            (flow("check_in", 12.0, 30.0), flow("check_in", 0.6, 30.0), flow("kiosk", 9.0, 60.0));
+        serve(vec![&mut crowd, &mut few, &mut elsewhere], &stations);
+        let work = |f: &Flow| f.people_per_s() * 30.0 / 2.0;
+        assert!((work(&crowd) + work(&few) - 2.0 * BUSIEST).abs() < 0.01, "{} {}", crowd.per_min, few.per_min);
+        assert!((crowd.per_min / few.per_min - 20.0).abs() < 0.2, "all come less often alike");
+        assert_eq!(elsewhere.per_min, 9.0, "no line, no limit");
+        let mut quiet = flow("check_in", 1.0, 30.0);
+        serve(vec![&mut quiet], &stations);
+        assert_eq!(quiet.per_min, 1.0);
+    }
+}
 
 /// Rooms by id, with those that one gets to from each.
 type Neighbors<'a> = BTreeMap<&'a str, BTreeSet<&'a str>>;
