@@ -31,6 +31,7 @@ pub(crate) fn restore(reading: &mut Reading, brief: &Brief, registry: &Registry)
     restore_heads(reading, brief);
     if !reading.single {
         restore_rooms(reading, brief, registry);
+        restore_each(reading, brief, &facts);
         restore_levels(reading, &facts);
         let wished = |id: &String| reading.wishes.wishes.iter().any(|w| &w.room_type == id);
         let forbidden =
@@ -151,6 +152,22 @@ fn restore_pairs(reading: &mut Reading, facts: &Facts, added: &[Wish]) {
     let pairs = facts.wishes.pairs.iter().filter(|p| (new(&p.a) || new(&p.b)) && there(&p.a) && there(&p.b));
     let pairs: Vec<Pair> = pairs.cloned().collect();
     reading.wishes.pairs.extend(pairs);
+}
+
+/// Gives each of several rooms the one that the brief says it comes with, where fewer were read: an induction room for each of
+/// three operating rooms.
+fn restore_each(reading: &mut Reading, brief: &Brief, facts: &Facts) {
+    let hosts = brief.asks.iter().filter_map(rooms_of).filter(|r| r.count.bound == Bound::Exactly);
+    for (host, guest) in hosts.filter_map(|host| Some((host, host.each.as_ref()?))) {
+        let (host_type, guest_type) = (facts.type_of(&host.room), facts.type_of(guest));
+        let lone = |w: &&mut Wish| w.room_type == guest_type && w.count == 1;
+        let Some(wish) = reading.wishes.wishes.iter_mut().find(lone) else { continue };
+        (wish.count, wish.exact) = (host.count.n, true);
+        let told = |p: &&Pair| p.a == guest_type && p.b == host_type;
+        if !reading.wishes.pairs.iter().any(|p| told(&p)) {
+            reading.wishes.pairs.extend(facts.wishes.pairs.iter().find(told).cloned());
+        }
+    }
 }
 
 /// Puts rooms on the storeys that the brief says, where nothing else was read of that.
