@@ -68,6 +68,7 @@ class Room:
         self.id, self.kind, self.circulation = room["room_id"], room["room_type"], room["circulation"]
         self.level = room.get("level", 0)
         self.area, self.corners = room["net_area_m2"], [(p["x"], p["y"]) for p in room["net_polygon"]]
+        self.outer = [(p["x"], p["y"]) for p in room["polygon"]]
         xs, ys = zip(*self.corners, strict=True)
         self.rect = (min(xs), min(ys), max(xs), max(ys))
         self.bodies = [Body(p) for p in placements if p["room_id"] == self.id]
@@ -1075,10 +1076,14 @@ def windows_at_neighbors(world):
 
 
 @objection("B", "residential")
-def motor_at_bedroom(world):
-    """a bedroom or bathroom of a home whose door opens by motor"""
-    quiet = ("bedroom", "single_bedroom", "kids_room", "guest_room", "bathroom", "ensuite", "toilet", "shower_room")
-    return any(d.get("automatic") for r in world.of(*quiet) for d in r.doors)
+def motor_at_home(world):
+    """a door of a home that opens by motor, gates and elevators aside"""
+    rooms = (r for r in world.rooms if r.kind not in ("garage", "double_garage", "elevator"))
+    return any(d.get("automatic") and len(set(d["room_ids"]) & lifts(world)) == 0 for r in rooms for d in r.doors)
+
+
+def lifts(world):
+    return {r.id for r in world.of("elevator")}
 
 
 @objection("A", "hospital")
@@ -1219,6 +1224,41 @@ def pinched(world):
         if reached(room, taken, 0.85, outlines(chairs)).count(False) >= 4:
             return True
     return False
+
+
+def blocks(corners):
+    """A rectilinear outline as rectangles between its corners' lines."""
+    (xs, ys), edges = map(sorted, map(set, zip(*corners, strict=True))), list(zip(corners, corners[1:] + corners[:1], strict=True))
+
+    def inside(x, y):
+        return sum((a[1] > y) != (b[1] > y) and a[0] > x for a, b in edges) % 2 == 1
+
+    cells = [(x0, y0, x1, y1) for x0, x1 in zip(xs, xs[1:], strict=False) for y0, y1 in zip(ys, ys[1:], strict=False)]
+    return [c for c in cells if inside((c[0] + c[2]) / 2, (c[1] + c[3]) / 2)]
+
+
+def common(first, second):
+    """The floor that two lists of rectangles share, m2."""
+    pairs = ((min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])) for a in first for b in second)
+    return sum(w * h for w, h in pairs if w > 0 and h > 0)
+
+
+@objection("A")
+def in_the_air(world):
+    """more than a tenth of a storey with nothing of the storey below under it"""
+    levels = sorted({r.level for r in world.rooms if r.level >= 0})
+    floors = {level: [b for r in world.rooms if r.level == level for b in blocks(r.outer)] for level in levels}
+    areas = {level: sum((x1 - x0) * (y1 - y0) for x0, y0, x1, y1 in floor) for level, floor in floors.items()}
+    pairs = zip(levels, levels[1:], strict=False)
+    return any(common(floors[upper], floors[lower]) < 0.9 * areas[upper] for lower, upper in pairs)
+
+
+@objection("A")
+def idle_storey(world):
+    """a storey with nothing but stairs, corridors, toilets and bathrooms"""
+    levels = {r.level for r in world.rooms}
+    used = {r.level for r in world.rooms if not r.circulation and r.kind not in WET | {"restroom", "accessible_toilet", "shower_room"}}
+    return len(levels) > 1 and bool(levels - used)
 
 
 # what people look at, rooms where the public is served, and doors that goods come through

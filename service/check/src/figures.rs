@@ -2,7 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use d3dgen_model::Point;
 use d3dgen_model::placements::AssetSource;
+use d3dgen_model::scenario::Scenario;
 
 use super::context::Context;
 
@@ -37,6 +39,7 @@ pub fn measure(c: &Context, storeys: &[Context]) -> BTreeMap<String, f64> {
         ("free_component", connected),
         ("unplaced_wishes", c.world.placements.unplaced.len() as f64),
     ];
+    let figures = figures.into_iter().chain(of_scenario(&c.world.scenario));
     // Only where a database of assets has a say: objects that are its assets, and such as are made for want of one.
     let choices = || c.objects.iter().filter_map(|o| o.placement.asset_choice.as_ref());
     let from = |source: AssetSource| choices().filter(|choice| choice.source == source).count() as f64;
@@ -46,6 +49,21 @@ pub fn measure(c: &Context, storeys: &[Context]) -> BTreeMap<String, f64> {
     ];
     let levels = ("storeys", storeys.len() as f64);
     let stock = stock.into_iter().chain(std::iter::once(levels));
-    let figures = figures.into_iter().chain(stock.filter(|(_, count)| *count > 0.0));
-    figures.map(|(name, value)| (name.to_owned(), (value * 1000.0).round() / 1000.0)).collect()
+    let figures = figures.chain(stock.filter(|(_, count)| *count > 0.0));
+    // the sum of nothing is -0
+    figures.map(|(name, value)| (name.to_owned(), (value * 1000.0).round() / 1000.0 + 0.0)).collect()
+}
+
+/// Returns how many people are there and come in, and what robots have to do.
+fn of_scenario(scenario: &Scenario) -> [(&'static str, f64); 6] {
+    let place = |id: &str| scenario.pois.iter().find(|p| p.poi_id == id).map(|p| Point::new(p.pose.x, p.pose.y));
+    let jobs = || scenario.robots.iter().flat_map(|r| &r.jobs);
+    [
+        ("people", scenario.agents.len() as f64),
+        ("people_who_come_per_min", scenario.flows.iter().map(|f| f.people_per_s() * 60.0).sum()),
+        ("robots", scenario.robots.len() as f64),
+        ("robot_jobs", jobs().count() as f64),
+        ("robot_minutes_at_least", jobs().map(|job| job.least_seconds(place) / 60.0).sum()),
+        ("conditions", scenario.conditions.len() as f64),
+    ]
 }

@@ -9,9 +9,10 @@ use super::lattice::{CELL_M2, Cellbox};
 use super::spec::Brief;
 use crate::candidate::Candidate;
 
-/// How far an inner wall moves onto one below, and how far a facade does, lattice units.
+/// How far an inner wall moves onto one below, how far a facade does, and how far one that has nothing below it, lattice units.
 const INNER_REACH: i32 = 5;
 const OUTER_REACH: i32 = 18;
+const JUTTING_REACH: i32 = 60;
 /// What a share of the storey costs that juts out or steps back, beside what jutting out costs anyway.
 const RAGGED: f64 = 12.0;
 /// What a plan may cost more for walls in line, for each that moves.
@@ -51,6 +52,10 @@ pub(crate) fn align(brief: &Brief, found: &mut Candidate) {
     let boxes = if below.by_core { out_of_core(&below.boxes, &frame) } else { below.boxes.clone() };
     let lower: Vec<(usize, Cellbox)> = boxes.into_iter().map(|b| (0, b)).collect();
     let outline: Vec<Cellbox> = lower.iter().map(|b| b.1).collect();
+    let edges = [Axis::X, Axis::Y].map(|axis| {
+        let ends = outline.iter().flat_map(|b| axis.ends(b));
+        ends.fold([i32::MAX, i32::MIN], |[low, high], at| [low.min(at), high.max(at)])
+    });
     let mut judge = Judge::new(brief);
     let cost = |found: &Candidate| {
         let own: Vec<Cellbox> = found.layout.boxes.iter().map(|b| b.1).collect();
@@ -64,7 +69,12 @@ pub(crate) fn align(brief: &Brief, found: &mut Candidate) {
         let lines: BTreeSet<i32> = found.layout.boxes.iter().flat_map(|(_, b)| axis.ends(b)).collect();
         for from in lines.into_iter().filter(|l| !fixed.contains(l)) {
             let outer = is_outer(&found.layout.boxes, axis, from);
-            let reach = if outer { OUTER_REACH } else { INNER_REACH };
+            let [low, high] = edges[axis as usize];
+            let reach = match outer {
+                true if from < low || from > high => JUTTING_REACH,
+                true => OUTER_REACH,
+                false => INNER_REACH,
+            };
             let mut targets: Vec<i32> = below.range(from - reach..=from + reach).copied().collect();
             targets.sort_by_key(|t| ((t - from).abs(), *t));
             if targets.first() == Some(&from) {

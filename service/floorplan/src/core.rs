@@ -6,10 +6,11 @@
 //! storeys are turned and moved so that their cores coincide, so a storey is planned without knowing where it will stand.
 
 use d3dgen_model::domain::{Domain, Scheme, Stairs};
-use d3dgen_model::scene_graph::{Robot, SceneGraph};
+use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::storeys::LinkKind;
 
 use super::lattice::{Cellbox, Frame, INNER_HALF_M, OUTER_HALF_M, up};
+use super::realize::spine_units;
 use super::spec::Brief;
 use crate::measures::DOUBLE_FROM_M;
 
@@ -49,6 +50,15 @@ pub(crate) struct Below {
     pub scheme: Option<Scheme>,
     /// How far south and north a wing may reach before it pushes others away, in its own layout.
     pub between: Option<(i32, i32)>,
+}
+
+impl Below {
+    /// Returns how deep its rooms are on the other side of the corridor than the core, lattice units; `None` where there are none.
+    pub(crate) fn depth_across(&self, brief: &Brief) -> Option<i32> {
+        let far = self.outline.iter().map(|b| b.y0).min()?;
+        let depth = -far - spine_units(brief);
+        (depth > 0).then_some(depth)
+    }
 }
 
 /// How the wings of a storey stand along its spine.
@@ -108,9 +118,7 @@ impl Core {
         if let Some(far) = far {
             set_area(brief, far, Cellbox::new(0, 0, width, depth));
         }
-        if graph.robots.iter().any(Robot::is_fitted) {
-            two_leaves(brief, &stairs, storeys.stairs.landing_m);
-        }
+        two_leaves(brief, &stairs, storeys.stairs.landing_m);
         Some(Self {
             host,
             boxes,
@@ -129,11 +137,12 @@ impl Core {
     }
 }
 
-/// Where doors are as wide as robots need, one leaf would sweep beyond the landing of the stairs: those have two.
+/// Where a door is so wide that one leaf would sweep beyond the landing of the stairs, onto the flights, it has two.
 fn two_leaves(brief: &mut Brief, stairs: &[usize], landing_m: f64) {
     for &room in stairs {
+        let open = brief.rooms[room].open_front;
         let width = &mut brief.rooms[room].door_width;
-        if Brief::opening(*width) > landing_m {
+        if !open && Brief::opening(*width) > landing_m {
             *width = width.max(DOUBLE_FROM_M);
         }
     }

@@ -4,7 +4,7 @@
 //! accepted only when they are zero. Soft terms are weighted sums, reported in the floorplan's `cost`.
 
 use d3dgen_model::domain::{Daylight, Zone};
-use d3dgen_model::measures::{JAMB_M, MOST_ELONGATED};
+use d3dgen_model::measures::{JAMB_M, MOST_ELONGATED, MOST_OVERHANG};
 use d3dgen_model::scene_graph::Connector;
 use d3dgen_model::seed::Stream;
 
@@ -114,8 +114,12 @@ const STEP: f64 = 0.4;
 const BLOATED_FROM: [f64; 2] = [1.6, 1.5];
 const BLOATED: f64 = 6.0;
 
-/// Weight of what hangs in the air.
+/// Weight of what hangs in the air, and what more counts beyond the share of a storey that may.
 pub(crate) const OVERHANG: f64 = 45.0;
+const OVERHANG_BEYOND: f64 = 60.0;
+
+/// What it costs a storey to be smaller than the rooms that stand on it, for the share that it lacks.
+const TOO_SMALL_TO_CARRY: f64 = 25.0;
 
 /// Weight of a meter by which a wing pushes others away that stand on those below.
 const PUSHED: f64 = 8.0;
@@ -159,6 +163,7 @@ impl Score {
     pub(crate) fn total(&self, weights: &Weights) -> f64 {
         self.hard * 30.0
             + OVERHANG * self.overhang
+            + OVERHANG_BEYOND * (self.overhang - MOST_OVERHANG).max(0.0)
             + PUSHED * self.pushed
             + NOTCHED * self.open
             + self.symmetry
@@ -590,6 +595,10 @@ impl<'b> Judge<'b> {
             let net: f64 = rooms.iter().map(|r| r.net_m2).sum();
             let miss = (net - area).abs() / area;
             score.soft[0] += 20.0 * (miss - AREA_TOLERANCE).max(0.0) + AREA_MISSED * (miss - AREA_MISSES).max(0.0);
+        }
+        if brief.carries > 0.0 {
+            let own = brief.rooms.iter().zip(rooms).filter(|(spec, _)| !spec.circulation).map(|(_, r)| r.net_m2);
+            score.soft[0] += TOO_SMALL_TO_CARRY * (1.0 - own.sum::<f64>() / brief.carries).max(0.0);
         }
         score.soft[0] += self.wrong_sizes();
         let perimeter: f64 = rooms.iter().map(|r| meters(r.outer.1)).sum();

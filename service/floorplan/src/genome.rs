@@ -11,6 +11,8 @@ use super::spec::Brief;
 
 /// Share of homes that begin with a bedroom, and not the largest room, at the end of the hall.
 const AT_THE_END: f64 = 0.8;
+/// Share of the starts of a storey whose rooms across from the core are as deep as those below.
+const LIKE_BELOW: f64 = 0.6;
 /// Least and greatest depth of a court to begin with, m.
 const COURT_M: (f64, f64) = (6.0, 10.0);
 /// Share of small rooms that look first for a room large enough to spare a corner.
@@ -205,6 +207,11 @@ impl Genome {
         if let Some(core) = &brief.core
             && count > 0
         {
+            // across the corridor a storey is best as deep as the one below
+            let across = core.below.as_ref().filter(|b| b.by_core && count == 2).and_then(|b| b.depth_across(brief));
+            if let Some(depth) = across.filter(|_| rng.chance(LIKE_BELOW)) {
+                genome.bands[1 - CORE_BAND].depth = depth;
+            }
             let band = &mut genome.bands[CORE_BAND];
             band.depth = core.depth;
             let at = rng.below(band.cells.len() + 1);

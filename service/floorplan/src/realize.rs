@@ -182,6 +182,12 @@ fn straight(task: &mut Task<'_, '_>) {
     let top = Row::new(task, 0, et[0] + et[1]);
     let bottom = Row::new(task, 1, eb[0] + eb[1]);
     let mut len = solve(&[&top, &bottom], &mut task.misfit);
+    // of rows that cannot be as long as each other, the longer one is as long as it wants to be where it carries a storey
+    let short = |row: &&Row<'_>| !row.cells.is_empty() && row.sum.max - row.offset < len;
+    if brief.carries > 0.0 && [&top, &bottom].into_iter().any(|row| short(&row)) {
+        let wish = (top.sum.target - top.offset).max(bottom.sum.target - bottom.offset);
+        len = within(&[&top, &bottom], wish).unwrap_or(len);
+    }
     let gable = brief.core.as_ref().filter(|c| c.gable && c.far.is_some());
     if let Some(core) = gable {
         let wish = core.below.as_ref().and_then(|b| b.far).unwrap_or(len.max(core.least));

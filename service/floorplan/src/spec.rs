@@ -10,7 +10,7 @@ use d3dgen_model::domain::{
     RobotUse, RoomType, Shape, Zone,
 };
 use d3dgen_model::measures::JAMB_M;
-use d3dgen_model::offer::has_docks;
+use d3dgen_model::offer::{has_docks, seated_in};
 use d3dgen_model::scene_graph::{BY_PROMPT, Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 use d3dgen_model::seed::Stream;
 use d3dgen_model::stage::Error;
@@ -128,6 +128,11 @@ impl RoomSpec {
         self.daylight == Daylight::Required || self.zone == Zone::Outdoor || self.gate.is_some()
     }
 
+    /// Returns true where its own door to outdoors is one that people push open: no gate for vehicles, beds or baggage.
+    pub(crate) fn is_gate_by_hand(&self) -> bool {
+        self.gate.is_some_and(|wide| wide < BY_MOTOR_M)
+    }
+
     /// Returns the least length of one piece of outer wall that a room on the facade needs, m.
     pub(crate) fn least_outer_wall(&self) -> f64 {
         self.gate.map_or(LEAST_WALL_M, |g| Brief::opening(g) + 2.0 * (JAMB_M + OUTER_HALF_M))
@@ -142,6 +147,8 @@ const OVER_GATE_M: f64 = 0.4;
 /// Clear width of a door to outdoors from which on lorries come to it, m, and how high it is for them (practice: 3 m and more).
 const DOCK_GATE_M: f64 = 2.4;
 const DOCK_GATE_HEIGHT_M: f64 = 3.0;
+/// Clear width of a door to outdoors from which on it opens by a motor, m.
+const BY_MOTOR_M: f64 = 1.4;
 /// What a robot's circle has to spare where it passes, both sides together, m.
 const PASSING_M: f64 = 0.1;
 /// Floor that rooms have for a usual robot to turn on anyway, m^2.
@@ -201,6 +208,8 @@ pub(crate) struct Brief {
     pub upper: bool,
     /// True for a storey of a home, whatever is on it.
     pub of_home: bool,
+    /// Areas of the rooms that stand on this storey together, corridors and stairs aside, net m^2; 0 for the highest one.
+    pub carries: f64,
     /// Stairs and elevator of a building with several storeys.
     pub core: Option<Core>,
     /// True in a domain of homes.
@@ -280,6 +289,7 @@ impl Brief {
             stem: false,
             upper: graph.rooms.iter().any(|r| r.level != 0),
             of_home,
+            carries: 0.0,
             core: None,
             for_homes: is_for_homes(domain),
             garden: Vec::new(),
@@ -429,6 +439,8 @@ impl Brief {
             specs[corridor].entrance = false;
         }
         let link = |l: &Link| Some(Link { a: index[l.a]?, b: index[l.b]?, ..*l });
+        let area = |rooms: &[RoomSpec]| rooms.iter().filter(|r| !r.circulation).map(|r| r.area_target).sum::<f64>();
+        let carries = self.carries * area(&specs) / area(&self.rooms).max(1.0);
         let both = |pairs: &[[usize; 2]]| pairs.iter().filter_map(|[a, b]| Some([index[*a]?, index[*b]?])).collect();
         let mut out = Self {
             rooms: specs,
@@ -445,6 +457,7 @@ impl Brief {
             conflicts: Vec::new(),
             guests: Vec::new(),
             stem: true,
+            carries,
             core: None,
             garden: Vec::new(),
             ..*self
@@ -609,9 +622,9 @@ fn room_spec(
     let robots = !graph.robots.is_empty();
     let sent = graph.robots.iter().any(|r| r.stops.contains(&room.id) || r.room_types.contains(&room.room_type));
     let works = sent || kind.robot.iter().any(|u| *u != RobotUse::KeepOut);
-    // nobody sleeps or washes behind a motor at home: those doors stand open for the robot
-    let retreat = kind.privacy == Privacy::Private && is_for_homes(domain);
-    let automatic = robots && works && domain.circulation.automatic_doors && !retreat;
+    // nobody lives behind motors: those doors stand open for the robot
+    let motors = domain.circulation.automatic_doors;
+    let automatic = robots && works && motors;
     // what hangs in the air or lies below the ground has no drive
     let gate = gate(domain, kind).filter(|_| room.level == 0);
     RoomSpec {
@@ -636,12 +649,12 @@ fn room_spec(
         // who uses a wheelchair has no floor to spare for a leaf
         slides: kind.sliding_door || graph.accessible && kind.wet && kind.privacy == Privacy::Private || automatic,
         automatic,
-        by_hand: robots && retreat,
+        by_hand: robots && !motors,
         kept_out: kind.robot.contains(&RobotUse::KeepOut) && !sent,
         entrance: room.entrance,
         by_entrance: is_by_entrance(room, graph),
         for_guests: is_for_guests(room, graph, domain),
-        people: room.occupants.filter(|_| kind.zone != Zone::Night).unwrap_or(0),
+        people: people(room, domain, kind),
         gate,
         gate_height: gate_height(domain, kind),
         door_width: door_width.max(robot),
@@ -655,6 +668,12 @@ fn room_spec(
         unit: None,
         locked: false,
     }
+}
+
+/// Returns how many people work, meet, eat or wait in a room; 0 for rooms to sleep in.
+fn people(room: &GraphRoom, domain: &Domain, kind: &RoomType) -> u32 {
+    let seated = || seated_in(domain, kind, room.target_area_m2);
+    if kind.zone == Zone::Night { 0 } else { room.occupants.unwrap_or_else(seated) }
 }
 
 /// Returns true for a room that the prompt wants near the entrance.

@@ -80,6 +80,10 @@ pub(crate) fn generate(
     }
     let ground = numbers.iter().position(|&l| l == 0).unwrap_or(0);
     carry(&mut briefs[ground..]);
+    for upper in ground + 1..briefs.len() {
+        let rooms = briefs[upper].rooms.iter().filter(|r| !r.circulation);
+        briefs[upper - 1].carries = rooms.map(|r| r.area_target).sum();
+    }
     let heights: Vec<f64> = briefs.iter().map(|b| height(b, storeys)).collect();
     let tallest = heights.iter().copied().fold(0.0, f64::max);
     for (i, brief) in briefs.iter_mut().enumerate() {
@@ -112,19 +116,29 @@ pub(crate) fn generate(
 }
 
 /// Makes each storey as large as those above it where its rooms may be larger, and these smaller by half of what it lacks: what is
-/// larger than the storey below hangs in the air. The lowest comes first.
+/// larger than the storey below hangs in the air. What is advised of areas yields where that is not enough. The lowest comes first.
 fn carry(briefs: &mut [Brief]) {
-    let all = |brief: &Brief| brief.rooms.iter().map(|r| r.area_target).sum::<f64>();
-    for upper in (1..briefs.len()).rev() {
-        let lacks = (all(&briefs[upper]) - all(&briefs[upper - 1])).max(0.0);
-        resize(&mut briefs[upper], -lacks / 2.0);
-        let lacks = (all(&briefs[upper]) - all(&briefs[upper - 1])).max(0.0);
-        resize(&mut briefs[upper - 1], lacks);
+    for advised in [true, false] {
+        for upper in (1..briefs.len()).rev() {
+            let lacks = |briefs: &[Brief]| (all_m2(&briefs[upper]) - all_m2(&briefs[upper - 1])).max(0.0);
+            let smaller = if advised { lacks(briefs) / 2.0 } else { 0.0 };
+            resize(&mut briefs[upper], -smaller, advised);
+            let larger = lacks(briefs);
+            resize(&mut briefs[upper - 1], larger, advised);
+            let left = lacks(briefs);
+            resize(&mut briefs[upper], -left, advised);
+        }
     }
 }
 
-/// Changes the areas aimed for of rooms that people use by so much together, m^2, as far as they may change.
-fn resize(brief: &mut Brief, by: f64) {
+/// Returns the areas that the rooms of a storey are to have together, m^2.
+fn all_m2(brief: &Brief) -> f64 {
+    brief.rooms.iter().map(|r| r.area_target).sum()
+}
+
+/// Changes the areas aimed for of rooms that people use by so much together, m^2, as far as they may change: as `advised`, or as
+/// their rules allow.
+fn resize(brief: &mut Brief, by: f64, advised: bool) {
     let used = |r: &RoomSpec| !r.circulation && matches!(r.zone, Zone::Day | Zone::Night | Zone::Public | Zone::Staff);
     let all: f64 = brief.rooms.iter().filter(|r| used(r)).map(|r| r.area_target).sum();
     if by == 0.0 || all <= 0.0 {
@@ -132,7 +146,7 @@ fn resize(brief: &mut Brief, by: f64) {
     }
     let mut changed = 0.0;
     for room in brief.rooms.iter_mut().filter(|r| used(r)) {
-        let [least, most] = room.limits.area_advised.unwrap_or([0.0, f64::MAX]);
+        let [least, most] = room.limits.area_advised.filter(|_| advised).unwrap_or([0.0, f64::MAX]);
         let low = (1.02 * room.area_min).max(least).min(room.area_target);
         let high = (0.98 * room.area_max).min(most).max(room.area_target);
         let area = (room.area_target * (1.0 + by / all)).clamp(low, high);

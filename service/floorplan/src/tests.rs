@@ -91,6 +91,7 @@ fn brief(mut rooms: Vec<RoomSpec>, width: f64, links: &[(usize, usize, Connector
         stem: false,
         upper: false,
         of_home: false,
+        carries: 0.0,
         core: None,
         for_homes: false,
         garden: Vec::new(),

@@ -246,6 +246,7 @@ impl Document for Domain {
                 ("ground_room_types", &storeys.ground_room_types),
                 ("upper_room_types", &storeys.upper_room_types),
                 ("each_level_room_types", &storeys.each_level_room_types),
+                ("carrying_room_types", &storeys.carrying_room_types),
             ] {
                 for (i, id) in list.iter().enumerate() {
                     room(format!("{at}/{key}/{i}"), id, &mut problems);

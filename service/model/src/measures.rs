@@ -15,5 +15,8 @@ pub const DOOR_HEIGHT_M: f64 = 2.1;
 /// Least radius of the disc that must find its way, m: a person, or a small robot.
 pub const LEAST_RADIUS_M: f64 = 0.30;
 
+/// Share of a storey that may jut out over the one below: more is a building in the air.
+pub const MOST_OVERHANG: f64 = 0.10;
+
 /// How many times as long as wide a room may be before that is called a fault.
 pub const MOST_ELONGATED: f64 = 2.5;

@@ -168,11 +168,19 @@ pub fn furnish_and_check(
     let read = || brief::of_plan(&graph.prompt, settings.pinned_floorplan.as_ref(), registry);
     let settings = &Settings { brief: settings.brief.clone().or_else(read), ..settings.clone() };
     let mut made = |graph: &SceneGraph, settings: &Settings| {
-        let mut steps = give_way::steps(graph, plugin.domain()).into_iter().peekable();
-        let mut outcome = attempts(graph, plugin, (settings, steps.peek().is_none()), observe, cancelled);
-        while matches!(outcome, Err(Error::Infeasible { .. })) {
+        let mut steps = give_way::steps(graph, plugin.domain()).peekable();
+        let mut outcome = attempts(graph, plugin, (settings, &mut || steps.peek().is_none()), observe, cancelled);
+        while is_in_vain(&outcome) {
             let Some(step) = steps.next() else { break };
-            outcome = attempts(&step, plugin, (settings, steps.peek().is_none()), observe, cancelled);
+            let next = attempts(&step, plugin, (settings, &mut || steps.peek().is_none()), observe, cancelled);
+            // a world that breaks a rule tells more than that there is none
+            let cancelled = matches!(next, Err(Error::Cancelled));
+            if outcome.is_err() || cancelled || !is_in_vain(&next) {
+                outcome = next;
+            }
+            if cancelled {
+                break;
+            }
         }
         outcome
     };
@@ -190,7 +198,15 @@ pub fn furnish_and_check(
         return made;
     }
     let few = Settings { attempts: FEW_ATTEMPTS, ..settings.clone() };
-    fit::or_refused(made, graph, &mut |graph| attempts(graph, plugin, (&few, true), &mut |_| (), cancelled))
+    fit::or_refused(made, graph, &mut |graph| attempts(graph, plugin, (&few, &mut || true), &mut |_| (), cancelled))
+}
+
+/// Returns true where something has to give way: there is no plan, or none that keeps the hard rules.
+fn is_in_vain(outcome: &Result<Generated, Error>) -> bool {
+    match outcome {
+        Ok(found) => !found.report.is_given() && !found.report.is_writable(),
+        Err(error) => matches!(error, Error::Infeasible { .. }),
+    }
 }
 
 /// Returns the plugin of a graph's domain.
@@ -223,7 +239,7 @@ struct Faults {
 fn attempts(
     graph: &SceneGraph,
     plugin: &dyn Plugin,
-    (settings, last): (&Settings, bool),
+    (settings, is_last): (&Settings, &mut dyn FnMut() -> bool),
     observe: &mut dyn FnMut(Event<'_>),
     cancelled: &AtomicBool,
 ) -> Result<Generated, Error> {
@@ -274,7 +290,7 @@ fn attempts(
                     Error::Mismatch { stage, message } => Error::Infeasible { stage, message },
                     other => other,
                 });
-                if !last && best.is_none() && attempt + 1 >= MOST_IN_VAIN {
+                if best.is_none() && attempt + 1 >= MOST_IN_VAIN && !is_last() {
                     break;
                 }
             }

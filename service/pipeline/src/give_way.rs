@@ -1,8 +1,11 @@
-//! What gives way when no plan is found, one thing after the other: a wall across the corridor, areas, then what the prompt wants
-//! beside each other. The world says each of it.
+//! What gives way when no plan is found, one thing after the other: a wall across the corridor, areas, what the prompt wants
+//! beside each other, and at last the second staircase. The world says each of it.
+
+use std::borrow::Cow;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::scene_graph::{BY_PROMPT, BY_STYLE, GraphRoom, Note, Robot, SceneGraph};
+use d3dgen_model::storeys::{LinkKind, VerticalLink};
 
 /// Shares by which rooms may be smaller and larger than was meant; none is smaller than its type allows.
 const SMALLER: f64 = 0.85;
@@ -10,14 +13,19 @@ const LARGER: f64 = 1.35;
 /// Most over least area up to which the prompt gives the area in figures.
 const TOLD: f64 = 1.3;
 
-/// Returns what to look for when there is no plan of a graph, each with more given up than the one before.
-pub(crate) fn steps(graph: &SceneGraph, domain: &Domain) -> Vec<SceneGraph> {
-    let mut out: Vec<SceneGraph> = Vec::new();
-    for step in [unlocked, roomier, loosened] {
-        let last = out.last().unwrap_or(graph);
-        out.extend(step(last, domain));
-    }
-    out
+/// One thing that gives way; `None` where a graph has nothing of that kind.
+type Step = fn(&SceneGraph, &Domain) -> Option<SceneGraph>;
+
+/// Returns what to look for when there is no plan of a graph, each with more given up than the one before. Nothing is made before it
+/// is asked for: most graphs have a plan.
+pub(crate) fn steps<'g>(graph: &'g SceneGraph, domain: &'g Domain) -> impl Iterator<Item = SceneGraph> + 'g {
+    let mut last = Cow::Borrowed(graph);
+    let all: [Step; 4] = [unlocked, roomier, loosened, with_one_stair];
+    all.into_iter().filter_map(move |step| {
+        let next = step(&last, domain)?;
+        last = Cow::Owned(next.clone());
+        Some(next)
+    })
 }
 
 /// Returns the graph with one corridor for all instead of one behind a lock.
@@ -82,6 +90,22 @@ fn loosened(graph: &SceneGraph, _: &Domain) -> Option<SceneGraph> {
     (out.conflicts.len() > graph.conflicts.len()).then_some(out)
 }
 
+/// Returns the graph with one staircase in place of two.
+fn with_one_stair(graph: &SceneGraph, _: &Domain) -> Option<SceneGraph> {
+    let stairs = |l: &&VerticalLink| l.kind == LinkKind::Stairs;
+    let gone: Vec<&String> = graph.links.iter().filter(stairs).skip(1).flat_map(|l| &l.room_ids).collect();
+    if gone.is_empty() {
+        return None;
+    }
+    let mut out = graph.clone();
+    out.rooms.retain(|r| !gone.contains(&&r.id));
+    out.edges.retain(|e| !gone.contains(&&e.a) && !gone.contains(&&e.b));
+    out.links.retain(|l| !l.room_ids.iter().any(|id| gone.contains(&id)));
+    let message = "no plan was found with two staircases at the ends of its storeys; it has one".into();
+    out.conflicts.push(Note { code: "one_stair".into(), message });
+    Some(out)
+}
+
 #[cfg(test)]
 mod tests {
     use d3dgen_model::document::Document;
@@ -97,7 +121,7 @@ mod tests {
         let request = Request { prompt: prompt.into(), seed: 1, ..Request::default() };
         let graph = generate(&request, &registry).expect("the prompt is plain");
         let domain = registry.get(&graph.domain).expect("it is built in").domain();
-        let steps = steps(&graph, domain);
+        let steps: Vec<SceneGraph> = steps(&graph, domain).collect();
         let codes: Vec<&str> = steps.iter().filter_map(|s| s.conflicts.last()).map(|n| n.code.as_str()).collect();
         assert_eq!(codes[..2], ["lock_not_built", "areas_gave_way"]);
         assert_eq!(graph.rooms.iter().filter(|r| r.circulation).count(), 2);

@@ -1,7 +1,7 @@
 //! The steps of the reading: each takes what those before it have found, and adds to it. Their order matters: words that
 //! one step has read are not read again by a later one.
 
-use d3dgen_model::domain::{GENERIC_ROOM_TYPE, Shape};
+use d3dgen_model::domain::{Attached, GENERIC_ROOM_TYPE, Shape};
 use d3dgen_model::scene_graph::{Note, Robot};
 use d3dgen_model::stage::Error;
 use d3dgen_model::style::LayoutStyle;
@@ -209,6 +209,11 @@ impl<'r, 'a> Draft<'r, 'a> {
         for &m in &self.on_each {
             let times = |n: i64| n.saturating_mul(storeys.above_ground() as i64);
             self.named.mentions[m].count = self.named.mentions[m].count.map(times);
+        }
+        let kind = self.site.building.building_type.as_ref();
+        let kind = self.site.domain.building_types.iter().find(|b| Some(&b.id) == kind);
+        if kind.is_some_and(|b| b.attached == Some(Attached::Flat)) {
+            self.notes.assumptions.extend(storey_wishes::lie_on_one_storey(&mut storeys, self.site.domain));
         }
         self.furnish_storeys(&mut storeys);
         storeys

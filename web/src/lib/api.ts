@@ -36,6 +36,17 @@ export const knowledge = createClient(KnowledgeService, transport);
 export const library = createClient(LibraryService, transport);
 export const jobs = createClient(JobService, transport);
 
+/** Returns the archive that a call sends in pieces; `told` hears how many bytes there are so far. */
+export async function gathered(pieces: AsyncIterable<{ chunk: Uint8Array }>, told: (bytes: number) => void = () => {}): Promise<Blob> {
+  const all: Uint8Array<ArrayBuffer>[] = [];
+  let size = 0;
+  for await (const { chunk } of pieces) {
+    all.push(new Uint8Array(chunk));
+    told((size += chunk.length));
+  }
+  return new Blob(all, { type: "application/zip" });
+}
+
 export function codeOf(error: unknown): Code {
   return ConnectError.from(error).code;
 }

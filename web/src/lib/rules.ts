@@ -53,6 +53,15 @@ export function brokenOf(report: Report | undefined): Broken[] {
   return [...hard, ...constraints.sort((a, b) => Number(b.hard) - Number(a.hard))];
 }
 
+/** Rules that a plan breaks only while a wall is dragged: the server joins walls anew when it is let go. */
+const OF_DRAWING = new Set(["wall_gap", "wall_stray"]);
+
+/** Returns the verdict on a world that is being dragged, without what is broken of its drawing alone. */
+export function ofDragged(report: Report | undefined): Report | undefined {
+  if (!report) return undefined;
+  return { ...report, rules: report.rules.map((rule) => (OF_DRAWING.has(rule.rule) ? { ...rule, violations: [] } : rule)) };
+}
+
 function standing(results: ConstraintResult[]): Standing {
   const has = (status: ConstraintStatus) => results.some((r) => r.status === status);
   if (has(ConstraintStatus.VIOLATED)) return results.some((r) => violated(r) && r.mandatory) ? "broken" : "advice";

@@ -14,6 +14,7 @@ import { type BuildingRequest, BuildingRequestSchema, type GenerateWorldRequest,
 import { codeOf, isRefusal, library, reasonOf, worlds } from "./api";
 import { keep, kept } from "./keep";
 import { placesOf } from "./problems";
+import { ofDragged } from "./rules";
 import { type TextKey, t } from "./texts.svelte";
 import { isAsRead, wishes } from "./wishes.svelte";
 
@@ -410,7 +411,7 @@ class Session {
       while (this.preview && this.preview !== judged) {
         judged = this.preview;
         const answer = await worlds.checkWorld({ world: judged });
-        if (this.preview) this.previewReport = answer.report;
+        if (this.preview) this.previewReport = ofDragged(answer.report);
       }
     } catch (error) {
       if (!isRefusal(error)) this.say(reasonOf(error));

@@ -1,6 +1,6 @@
 /** A scenario moved by the server: where everybody was, and what came of it. */
 import type { World } from "../gen/d3dgen/v1/world_pb";
-import { worlds } from "./api";
+import { gathered, worlds } from "./api";
 import type { P } from "./geometry";
 import { unzipped } from "./zip";
 
@@ -44,9 +44,7 @@ export interface Simulation {
 
 /** Returns a world's scenario as it goes for so many seconds. */
 export async function simulated(world: World, seconds: number): Promise<Simulation> {
-  const pieces: Uint8Array<ArrayBuffer>[] = [];
-  for await (const { chunk } of worlds.simulateWorld({ world, seconds })) pieces.push(new Uint8Array(chunk));
-  const archive = await new Blob(pieces).arrayBuffer();
+  const archive = await (await gathered(worlds.simulateWorld({ world, seconds }))).arrayBuffer();
   const read = async (name: string): Promise<unknown> => {
     const file = await unzipped(archive, (path) => path.endsWith(name));
     if (!file) throw new Error(`the server sent no ${name}`);

@@ -22,6 +22,8 @@ class Wishes {
   /** Facts of the words that the person left out. */
   removed = $state.raw<Ask[]>([]);
   #newest = 0;
+  /** Words on their way: who asks for the same waits for the same. */
+  #reading: { prompt: string; done: Promise<void> } | undefined;
 
   /** True when the person asks for something else than the words say. */
   get areChanged(): boolean {
@@ -29,7 +31,16 @@ class Wishes {
   }
 
   /** Reads words; what the person changed of the words before stays changed. */
-  async read(prompt: string) {
+  read(prompt: string): Promise<void> {
+    if (this.#reading?.prompt === prompt) return this.#reading.done;
+    const done = this.#read(prompt).finally(() => {
+      if (this.#reading?.done === done) this.#reading = undefined;
+    });
+    this.#reading = { prompt, done };
+    return done;
+  }
+
+  async #read(prompt: string) {
     if (prompt === (this.brief?.prompt ?? "")) return;
     const turn = ++this.#newest;
     const now = prompt ? await read(prompt) : undefined;

@@ -3,7 +3,7 @@ import { Box3, Group, type Object3D, Quaternion, Vector3 } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
 import type { Placement } from "../gen/d3dgen/v1/placements_pb";
-import { assets } from "../lib/api";
+import { assets, gathered } from "../lib/api";
 import { unzipped } from "../lib/zip";
 
 /** A part of a thing that moves: a drawer, a door, a seat that turns. */
@@ -33,9 +33,7 @@ const loader = new GLTFLoader();
 const FRONTS: Record<string, number> = { "+x": 0, "-y": Math.PI / 2, "-x": Math.PI, "+y": -Math.PI / 2, xy: Math.PI / 2 };
 
 async function load(assetId: string): Promise<Object3D | undefined> {
-  const pieces: Uint8Array<ArrayBuffer>[] = [];
-  for await (const { chunk } of assets.downloadAsset({ assetId, formats: ["glb", "json"] })) pieces.push(new Uint8Array(chunk));
-  const archive = await new Blob(pieces).arrayBuffer();
+  const archive = await (await gathered(assets.downloadAsset({ assetId, formats: ["glb", "json"] }))).arrayBuffer();
   const glb = await unzipped(archive, (path) => path.endsWith(".glb"));
   const annotation = await unzipped(archive, (path) => path.endsWith(".json"));
   if (!glb || !annotation) return undefined;

@@ -142,6 +142,11 @@ pub const STOREY_RULES: &[Rule] = &[
     whole("link_offset", "stairs and elevators lie above each other, within 0.05 m", storeys::offset),
     whole("link_closed", "one gets into stairs and elevators on every storey", storeys::closed),
     whole("elevator_missing", "buildings that need an elevator have one that stops at every storey", storeys::elevator),
+    whole(
+        "storey_in_the_air",
+        "a storey juts out over the one below by a tenth of its floor at most",
+        storeys::overhang,
+    ),
     whole("storey_cut_off", "one gets from the entrance to every room, by stairs where need be", storeys::reach),
 ];
 

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use d3dgen_model::Rect;
 use d3dgen_model::floorplan::PlanRoom;
+use d3dgen_model::measures::MOST_OVERHANG;
 use d3dgen_model::storeys::{LinkKind, VerticalLink};
 
 use super::Findings;
@@ -76,6 +78,26 @@ pub fn elevator(c: &Context, out: &mut Findings) {
         out.look();
         if !joins(c, LinkKind::Elevator, pair[0], pair[1]) {
             out.add(format!("level {}", pair[1]), format!("no elevator goes from it to level {}", pair[0]));
+        }
+    }
+}
+
+pub fn overhang(c: &Context, out: &mut Findings) {
+    let plan = c.plan();
+    let floor = |level: i32| {
+        let here = plan.rooms.iter().filter(move |r| r.level == level);
+        here.flat_map(|r| r.polygon.rects()).collect::<Vec<Rect>>()
+    };
+    for pair in plan.level_numbers().windows(2).filter(|pair| pair[0] >= 0) {
+        out.look();
+        let (lower, upper) = (floor(pair[0]), floor(pair[1]));
+        let without = |free: Vec<Rect>, cut: &Rect| free.iter().flat_map(|f| f.without(cut)).collect();
+        let free = lower.iter().fold(upper.clone(), without);
+        let area = |rects: &[Rect]| rects.iter().map(Rect::area).sum::<f64>();
+        let share = area(&free) / area(&upper).max(1.0);
+        if share > MOST_OVERHANG {
+            let message = format!("{:.0} % of it has nothing of level {} below it", 100.0 * share, pair[0]);
+            out.add_figure(format!("level {}", pair[1]), message, share, MOST_OVERHANG, "ratio");
         }
     }
 }

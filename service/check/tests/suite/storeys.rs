@@ -76,6 +76,25 @@ const BREAKS: &[Break] = &[
         world.floorplan.links.retain(|l| l.kind != LinkKind::Elevator);
         had.then(|| "level 1".into())
     }),
+    (
+        "storey_in_the_air",
+        &[
+            "zone_net",
+            "wall_gap",
+            "wall_stray",
+            "door_floating",
+            "door_unlinked",
+            "zone_overlap",
+            "window_misplaced",
+            "region_outside",
+        ],
+        |world| {
+            let ground = world.floorplan.rooms.iter_mut().filter(|r| r.level == 0 && !r.circulation);
+            let room = ground.max_by(|a, b| a.net_area_m2.total_cmp(&b.net_area_m2))?;
+            room.polygon.0.iter_mut().for_each(|p| p.x += 100.0);
+            Some("level 1".into())
+        },
+    ),
     ("storey_cut_off", &["stairs_missing"], |world| {
         world.floorplan.links.iter_mut().for_each(|l| l.room_ids.truncate(1));
         let upper = world.floorplan.rooms.iter().find(|r| r.level == 1 && !r.circulation)?;

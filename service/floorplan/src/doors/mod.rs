@@ -29,6 +29,8 @@ const OPEN_MAX_M: f64 = 4.0;
 const OPEN_JAMB_M: f64 = 0.3;
 /// Wall that a room open to several others keeps in one piece beside each opening, as far as that leaves one, m.
 const RUN_M: f64 = 2.7;
+/// The same between rooms without a kitchen's run, m.
+const SIDEBOARD_M: f64 = 1.4;
 /// What a meter counts in a home by which the door of a bedroom is nearer to the entrance than it might be, and by which that
 /// of a room of the day is further from it.
 const FROM_ENTRANCE: f64 = 0.2;
@@ -43,6 +45,8 @@ const BED_ASIDE_M: f64 = 0.15;
 /// Floor area of a room by day from which on it has a second door, m^2, and how far that is from the first at least, m (about
 /// 60 people at 2.5 m^2: Approved Document B, table 2.2).
 const SECOND_DOOR_M2: f64 = 150.0;
+/// People up to whom one way out is enough, in a room and in a building (IBC 1006.2, office_us_single_exit_max_occupants).
+const ONE_EXIT_PEOPLE: u32 = 49;
 const BETWEEN_DOORS_M: f64 = 6.0;
 /// Floor area of a station from which on it is open to two corridors, m^2, how far apart these are at least, and the widest
 /// opening to the second, m.
@@ -328,15 +332,20 @@ impl Site<'_> {
         }
     }
 
-    /// Places second doors from the corridor into large rooms, as far from the first as the wall between them allows.
+    /// Places second doors from the corridor into large rooms, and into those of more people than may share one, as far from the first as the wall between them allows.
     fn lay_second_doors(&self, laid: &mut Laid, rng: &mut Stream) {
         let brief = self.brief;
         let Some(spine) = brief.spine.filter(|_| brief.second_exit && !brief.hub) else { return };
-        let large = |r: &usize| brief.rooms[*r].on_spine && *r != spine && self.net_m2[*r] >= SECOND_DOOR_M2;
-        for room in (0..brief.rooms.len()).filter(large) {
+        let large = |r: &usize| self.net_m2[*r] >= SECOND_DOOR_M2 || brief.rooms[*r].people > ONE_EXIT_PEOPLE;
+        let opens = |r: &usize| brief.rooms[*r].on_spine && *r != spine;
+        for room in (0..brief.rooms.len()).filter(opens).filter(large) {
             let ids = [room, spine].map(|r| &brief.rooms[r].id);
             let first = laid.spots.iter().find(|l| ids.iter().all(|id| l.door.room_ids.contains(id)));
             let Some(first) = first.map(|l| l.door.clone()).filter(|d| d.kind != DoorKind::Open) else { continue };
+            let own_way_out = laid.spots.iter().any(|l| l.door.room_ids == [ids[0].clone()]);
+            if own_way_out && self.net_m2[room] < SECOND_DOOR_M2 {
+                continue;
+            }
             let away = |spot: &Spot| spot.door.line.middle().distance(first.line.middle());
             let stretches = self.stretches.iter().filter(|s| s.joins(room, spine));
             let mut spots: Vec<Spot> =
@@ -450,9 +459,15 @@ impl Site<'_> {
                 let start = (from + to - whole) / 2.0;
                 return vec![self.open_spot(s, a, b, start, whole)];
             }
-            // what stands in the smaller room needs walls too: half of this one, in one piece, or what a kitchen's run takes
+            // what stands in the smaller room needs walls too: half of this one, in one piece, or what a kitchen's run takes; between
+            // rooms to sit in a sideboard's length is enough
             let length = meters(s.len());
-            let width = (length / 2.0).min(length - RUN_M).clamp(opening, whole);
+            let width = if [a, b].iter().any(|&r| self.brief.rooms[r].wet) {
+                (length / 2.0).min(length - RUN_M)
+            } else {
+                (length / 2.0).max(length - SIDEBOARD_M)
+            };
+            let width = width.clamp(opening, whole);
             return [from, to - width].map(|start| self.open_spot(s, a, b, start, width)).into();
         }
         let into = self.swing_room(a, b);

@@ -12,7 +12,7 @@ use super::super::outline::Stretch;
 use super::super::realize::ONE_WAY_M;
 use super::super::spec::{Brief, RoomSpec};
 use super::spot::{Spot, View};
-use super::{APPROACH_M, Laid, Site};
+use super::{APPROACH_M, Laid, ONE_EXIT_PEOPLE, Site};
 use crate::measures::{DOUBLE_FROM_M, GARDEN_DOOR_M, LEAST_WALL_M, MARGIN_M};
 
 /// What a meter between the entrance and the nearest room for visitors counts against the length of its wall.
@@ -27,8 +27,6 @@ const ENTRANCE_ASIDE_M: f64 = 0.4;
 const END_WALL: f64 = 1.8;
 /// Farthest that the ways out of a room are told apart by, m.
 const MOST_WAY_M: f64 = 100.0;
-/// People up to whom one way out is enough, in a room and in a building (IBC 1006.2, office_us_single_exit_max_occupants).
-const ONE_EXIT_PEOPLE: u32 = 49;
 /// What it costs that a home's entrance opens outwards.
 const OUTWARD: f64 = 4.0;
 /// How far an entrance stands aside at least where that is of use, m, and what it costs.
@@ -84,7 +82,7 @@ impl Site<'_> {
             let walls = self.stretches.iter().filter(|s| s.leads_out_of() == Some(room) && !self.is_party(s));
             let mut spots: Vec<Spot> = self.standing_spot(&[room], false).into_iter().collect();
             if spots.is_empty() {
-                spots.extend(walls.flat_map(|s| self.gate_spots(s, room, clear, opening)));
+                spots.extend(walls.flat_map(|s| self.gate_spots(s, (room, spec), clear, opening)));
             }
             if !laid.take_best(spots) {
                 laid.missing.push(format!("outdoors to {}", spec.id));
@@ -92,17 +90,23 @@ impl Site<'_> {
         }
     }
 
-    fn gate_spots(&self, s: &Stretch, room: usize, clear: f64, opening: f64) -> Vec<Spot> {
+    fn gate_spots(&self, s: &Stretch, (room, spec): (usize, &RoomSpec), clear: f64, opening: f64) -> Vec<Spot> {
         let (from, to) = self.usable(s);
         if to - from < opening - 1e-9 {
             return Vec::new();
         }
         let middle = (from + to - opening) / 2.0;
-        let spots = [(middle, 0.0), (from, 0.5), (to - opening, 0.5)].into_iter().map(|(start, penalty)| {
+        let starts = [(middle, 0.0), (from, 0.5), (to - opening, 0.5)];
+        if spec.is_gate_by_hand() {
+            // a door for goods and staff leaves the room its windows
+            let places = starts.into_iter().filter(|(start, _)| spec.daylight == Daylight::None || *start != middle);
+            return places.filter_map(|(start, penalty)| self.outward_spot(s, room, (start, clear), penalty)).collect();
+        }
+        let spots = starts.into_iter().map(|(start, penalty)| {
             let line = Segment { start: s.point(start), end: s.point(start + opening) };
             let zone = self.zone(s, room, start, opening, APPROACH_M);
             let usual = self.door(line, DoorKind::Sliding, clear, s, &[room], None);
-            let height_m = self.brief.rooms[room].gate_height.max(usual.height_m);
+            let height_m = spec.gate_height.max(usual.height_m);
             let door = Door { automatic: true, height_m, ..usual };
             Spot { door, wall: None, view: View::Other, zones: vec![(room, zone)], penalty: penalty + meters(s.len()) }
         });
@@ -225,7 +229,8 @@ impl Site<'_> {
             let id = &brief.rooms[room].id;
             let own: Vec<Point> =
                 laid.spots.iter().filter(|l| l.door.room_ids.contains(id)).map(|l| l.door.line.middle()).collect();
-            if laid.spots.iter().any(|l| l.door.room_ids == [id.clone()]) {
+            // who comes in there has one way out by it, and so many people need two
+            if !alone && laid.spots.iter().any(|l| l.door.room_ids == [id.clone()]) {
                 continue;
             }
             let away = |spot: &Spot| {

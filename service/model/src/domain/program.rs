@@ -273,6 +273,9 @@ pub struct Storeys {
     /// Room types that every storey should have one of before any has two (toilets).
     #[serde(default)]
     pub each_level_room_types: Vec<String>,
+    /// Rooms that a storey gets which would be smaller than the one that stands on it, best first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub carrying_room_types: Vec<String>,
     /// Which buildings have two stairs: those of which one of these speaks that holds in their country.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub two_stairs: Vec<TwoStairs>,

@@ -75,6 +75,15 @@ pub fn seating(domain: &Domain, kind: &RoomType, wanted: u32) -> Option<Seating>
     Some(Seating { most, area_m2: SPARE_M2 + AT_TABLE_M2 * n })
 }
 
+/// Returns how many people a room of this area (m^2) seats in rows or at small tables, where nobody says a number; 0 for all other
+/// rooms, those with one table among them.
+pub fn seated_in(domain: &Domain, kind: &RoomType, area_m2: f64) -> u32 {
+    let Some((one, two)) = seating(domain, kind, 1).zip(seating(domain, kind, 2)) else { return 0 };
+    let apiece = two.area_m2 - one.area_m2;
+    let spare = one.area_m2 - apiece;
+    if one.most < u32::MAX { 0 } else { ((area_m2 - spare) / apiece).max(0.0) as u32 }
+}
+
 /// Returns true for seats that fill a room: not the chairs for visitors beside its desks.
 fn eats_or_waits(domain: &Domain, line: &Furnishing) -> bool {
     let shape = domain.anchor(&line.item).map(|o| o.shape);

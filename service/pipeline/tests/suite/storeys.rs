@@ -4,8 +4,11 @@ use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
 use d3dgen_model::Document;
+use d3dgen_model::domain::Zone;
+use d3dgen_model::floorplan::PlanRoom;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::storeys::LinkKind;
+use d3dgen_model::world::World;
 use d3dgen_pipeline::generate::{Settings, generate_world};
 use d3dgen_pipeline::scene_graph::{Request, generate};
 use d3dgen_plugins::Registry;
@@ -252,7 +255,7 @@ fn robots_ride_to_other_storeys_or_the_world_says_that_they_do_not() {
         let settings = Settings::default();
         generate_world(&request(prompt, 1), &registry, &settings, &mut |_| {}, &AtomicBool::new(false)).expect(prompt)
     };
-    let levels = |world: &d3dgen_model::world::World| -> Vec<i32> {
+    let levels = |world: &World| -> Vec<i32> {
         let poi = |id: &String| world.scenario.pois.iter().find(|p| &p.poi_id == id);
         let goals = world.scenario.robots.iter().flat_map(|t| &t.goals).filter_map(poi);
         let mut out: Vec<i32> = goals.filter_map(|p| Some(world.floorplan.room(&p.room_id)?.level)).collect();
@@ -260,9 +263,7 @@ fn robots_ride_to_other_storeys_or_the_world_says_that_they_do_not() {
         out.dedup();
         out
     };
-    let told = |world: &d3dgen_model::world::World| {
-        world.scene_graph.conflicts.iter().any(|n| n.code == "robots_miss_storeys")
-    };
+    let told = |world: &World| world.scene_graph.conflicts.iter().any(|n| n.code == "robots_miss_storeys");
     let made = world("Office on 3 floors with an elevator and a cleaning robot");
     assert!(made.report.sound);
     assert_eq!((levels(&made.world), told(&made.world)), (vec![0, 1, 2], false));
@@ -311,4 +312,71 @@ fn cores_line_up_for_every_seed() {
 fn a_single_storey_house_is_a_home() {
     let graph = generate(&request("single-storey house with two bedrooms", 1), &Registry::builtin()).unwrap();
     assert_eq!((graph.domain.as_str(), graph.level_numbers()), ("residential", vec![0]));
+}
+
+#[test]
+fn a_flat_on_a_storey_of_its_house_is_no_tower() {
+    let registry = Registry::builtin();
+    for prompt in [
+        "A flat on the 5th floor with two bedrooms, living room, kitchen and bathroom, 70 m2",
+        "Apartment on the third floor: living room, bedroom, kitchen, bathroom",
+    ] {
+        let graph = generate(&request(prompt, 1), &registry).unwrap();
+        assert_eq!((graph.level_numbers(), graph.links.len()), (vec![0], 0), "{prompt}");
+    }
+}
+
+#[test]
+fn what_comes_from_the_street_is_on_the_ground_floor() {
+    let registry = Registry::builtin();
+    for (prompt, room_type) in [
+        ("Restaurant op twee verdiepingen met keuken, bar, 80 zitplaatsen en een kantoor", "kitchen"),
+        (
+            "Fire station on two floors with vehicle hall for 3 engines, dormitory, kitchen, training room",
+            "vehicle_bay",
+        ),
+        ("Primary school with 8 classrooms on two floors, canteen and kitchen", "kitchen"),
+    ] {
+        let graph = generate(&request(prompt, 1), &registry).unwrap();
+        let mut rooms = graph.rooms.iter().filter(|r| r.room_type == room_type).peekable();
+        assert!(rooms.peek().is_some() && rooms.all(|r| r.level == 0), "{prompt}");
+    }
+}
+
+/// Returns the rooms of a storey that it is there for: all but stairs, corridors and small ones that serve others.
+fn lived_in(world: &World, registry: &Registry, level: i32) -> usize {
+    let domain = registry.get(&world.scene_graph.domain).expect("it is built in").domain();
+    let used = |r: &&PlanRoom| {
+        let kind = domain.room_type_or_generic(&r.room_type);
+        let lived_in = matches!(kind.zone, Zone::Day | Zone::Night | Zone::Public | Zone::Staff);
+        !kind.wet && (lived_in || !r.circulation && r.net_area_m2 > 12.0)
+    };
+    world.floorplan.rooms.iter().filter(|r| r.level == level).filter(used).count()
+}
+
+#[test]
+fn every_storey_stands_on_the_one_below_and_is_there_for_something() {
+    let registry = Registry::builtin();
+    for (prompt, seed) in [
+        ("Casa de dos plantas: abajo salón, cocina y aseo; arriba tres dormitorios y dos baños", 104),
+        (
+            "Two-storey house: downstairs a toilet and a store, upstairs living room, kitchen, four bedrooms and two bathrooms",
+            3,
+        ),
+        ("Student house with 12 bedrooms, shared kitchen, 4 bathrooms on three floors", 134),
+        ("Büro auf drei Geschossen für 60 Mitarbeiter, Empfang, Küche, sechs Besprechungsräume", 132),
+        ("Terraced house, two storeys, three bedrooms, living room, kitchen, bathroom", 121),
+        (
+            "Three-storey house: on the ground floor a garage, on the first floor living room and kitchen, on the second floor four bedrooms and two bathrooms",
+            5,
+        ),
+    ] {
+        let request = request(prompt, seed);
+        let made = generate_world(&request, &registry, &Settings::default(), &mut |_| (), &AtomicBool::new(false));
+        let made = made.unwrap_or_else(|e| panic!("{prompt}: {e}"));
+        assert!(made.report.sound, "{prompt}: {:?}", made.report.rules.iter().flat_map(|r| &r.violations).next());
+        let storeys: Vec<usize> =
+            made.world.floorplan.level_numbers().iter().map(|l| lived_in(&made.world, &registry, *l)).collect();
+        assert!(storeys.iter().all(|n| *n > 0), "{prompt}: {storeys:?} rooms by storey");
+    }
 }

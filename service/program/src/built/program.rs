@@ -8,7 +8,7 @@ use d3dgen_model::scene_graph::Note;
 use super::{hosts, large, layout, occupants, vital, workers};
 use crate::built::growth::{Build, may_grow};
 use crate::built::planned::Planned;
-use crate::levels::{spread, units};
+use crate::levels::{carry, spread, units};
 use crate::reading::Reading;
 use crate::subject::programs::{is_dwelling, is_office};
 use crate::tokens::words::words;
@@ -36,7 +36,7 @@ pub(crate) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
     layout::follow(reading, &mut rooms);
     let mut rooms = finish(reading, rooms);
     spread::open_offices(reading, &mut rooms);
-    spread::fill_ground(reading, &mut rooms);
+    carry::fill(reading, &mut rooms);
     rooms
 }
 

@@ -1,12 +1,13 @@
 //! Which room goes on which storey, and the stairs and elevators that join them.
 
 use d3dgen_knowledge::jurisdiction;
-use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, Storeys as Rules, TwoStairs, Zone};
+use d3dgen_model::domain::{Access, Domain, GENERIC_ROOM_TYPE, RoomType, Shape, Storeys as Rules, TwoStairs, Zone};
 use d3dgen_model::offer;
 use d3dgen_model::offer::sleeps;
 use d3dgen_model::scene_graph::{BY_CIRCULATION, Connector, GraphEdge, GraphRoom, Note};
 use d3dgen_model::storeys::{LinkKind, VerticalLink};
 
+use super::carry;
 use crate::built::edges::{self, Web};
 use crate::built::planned::Planned;
 use crate::built::rooms;
@@ -26,12 +27,18 @@ const MOST_SPREAD: f64 = 1.2;
 /// How much larger a storey of a home may be than the one below, and how often areas are scaled until it is not.
 const EVEN: f64 = 0.01;
 const ROUNDS: usize = 4;
+/// Share of a storey that the one below has at least before rooms which the prompt puts above come down, and up to which they do.
+const FOUNDATION: f64 = 0.4;
+const CARRIES: f64 = 0.75;
 /// Rooms of a storey from which on a building has two stairs whatever its domain says.
 const TWO_STAIRS: usize = 16;
 /// The least floor of such a storey beside its corridor, m^2: on less all rooms are within 35 m of one stair (ASR A2.3).
 const TWO_STAIRS_M2: f64 = 300.0;
-/// Rooms of a storey that two stairs stand at the ends of, where the prompt or a rule asks for two.
+/// Rooms of a storey that two stairs stand at the ends of, where the prompt or a rule asks for two; and those of a storey of large
+/// rooms, with their floor, m^2.
 const LEAST_FOR_TWO: usize = 6;
+const LEAST_LARGE: usize = 3;
+const LARGE_ROOMS_M2: f64 = 120.0;
 
 /// Ids of the elevators of a building, as many as stand in one core.
 const LIFTS: [&str; 4] = ["elevator_a", "elevator_b", "elevator_c", "elevator_d"];
@@ -77,6 +84,7 @@ pub(crate) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
     let fixed = fixed_levels(reading, planned, levels);
     let mut clusters = clusters(reading, rules, planned, areas, &fixed);
     let mut at: Vec<Option<i32>> = clusters.iter().map(|c| c.fixed).collect();
+    let told: Vec<bool> = at.iter().map(Option::is_some).collect();
     let above: Vec<i32> = levels.iter().copied().filter(|l| *l >= 0).collect();
     let total: f64 = clusters.iter().map(|c| c.area).sum();
     let mean = total / above.len() as f64;
@@ -156,7 +164,15 @@ pub(crate) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
     for i in rest {
         at[i] = Some(least_loaded(&above, |l| load(&at, &clusters, l)));
     }
-    settle(&mut at, &mut clusters, &above, &load);
+    let used: Vec<bool> = clusters.iter().map(|c| c.rooms.iter().any(|&r| is_used(planned[r].kind))).collect();
+    settle(&mut at, &mut clusters, (&above, &used), &load);
+    let moved = stand_on_ground(&mut at, &clusters, (&above, &used), &load);
+    for (i, to) in moved.into_iter().filter(|(i, _)| told[*i]) {
+        let names: Vec<&str> = clusters[i].rooms.iter().map(|&r| planned[r].kind.label.as_str()).collect();
+        let names = names.join(", ").to_lowercase();
+        let message = format!("{names}: asked for on a storey that nothing would carry; planned on level {to}");
+        reading.conflicts.push(Note::new("other_storey", message));
+    }
     let mut out = vec![0; planned.len()];
     for (cluster, level) in clusters.iter().zip(at) {
         cluster.rooms.iter().for_each(|&r| out[r] = level.unwrap_or(0));
@@ -202,13 +218,10 @@ fn least_loaded(levels: &[i32], load: impl Fn(i32) -> f64) -> i32 {
 /// and the prompt allow.
 pub(crate) fn even_out(planned: &[Planned], rooms: &mut [GraphRoom], levels: &[i32], lives: bool) {
     let above: Vec<i32> = levels.iter().copied().filter(|l| *l >= 0).collect();
-    let area = |rooms: &[GraphRoom], level: i32| -> f64 {
-        rooms.iter().filter(|r| r.level == level).map(|r| r.target_area_m2).sum()
-    };
     // from the top down: what a storey carries is settled before it is asked to carry it
     for pair in above.windows(2).rev() {
         for _ in 0..if lives { ROUNDS } else { 1 } {
-            let (lower, upper) = (area(rooms, pair[0]), area(rooms, pair[1]));
+            let (lower, upper) = (area_on(rooms, pair[0]), area_on(rooms, pair[1]));
             if upper <= lower * if lives { 1.0 + EVEN } else { 1.0 } || lower <= 0.0 {
                 break;
             }
@@ -218,22 +231,28 @@ pub(crate) fn even_out(planned: &[Planned], rooms: &mut [GraphRoom], levels: &[i
             }
         }
     }
+    for pair in above.windows(2).rev() {
+        carry::grow(planned, rooms, (pair[0], pair[1]));
+    }
     // a storey that is a unit is to leave no roof beside its corridor
     for pair in above.windows(2).filter(|_| !lives && planned.iter().any(|p| p.unit.is_some())) {
-        let (lower, upper) = (area(rooms, pair[0]), area(rooms, pair[1]));
+        let (lower, upper) = (area_on(rooms, pair[0]), area_on(rooms, pair[1]));
         if upper > 0.0 && (1.0..MOST_SPREAD).contains(&(lower / upper)) {
             scale(planned, rooms, pair[1], lower / upper, lives);
         }
     }
 }
 
+/// Returns the areas that the rooms of a storey are to have together, net m^2.
+pub(super) fn area_on(rooms: &[GraphRoom], level: i32) -> f64 {
+    rooms.iter().filter(|r| r.level == level).map(|r| r.target_area_m2).sum()
+}
+
 /// Scales the rooms of a storey whose areas neither the prompt nor their people fix, within what their types allow.
 fn scale(planned: &[Planned], rooms: &mut [GraphRoom], level: i32, factor: f64, lives: bool) {
     // rooms for so many people may have more floor, never less
-    let free = planned
-        .iter()
-        .zip(rooms)
-        .filter(|(p, _)| p.area_m2.is_none() && (p.people_area_m2.is_none() || lives && factor > 1.0));
+    let free =
+        planned.iter().zip(rooms).filter(|(p, _)| p.area_m2.is_none() && (p.people_area_m2.is_none() || factor > 1.0));
     for (p, room) in free.filter(|(_, r)| r.level == level) {
         let [min, max] = room.area_range_m2;
         // nobody wants a garage as large as the bedrooms above it
@@ -245,14 +264,9 @@ fn scale(planned: &[Planned], rooms: &mut [GraphRoom], level: i32, factor: f64, 
 }
 
 /// Moves rooms down from storeys that would jut out over the one below, and into storeys without rooms.
-fn settle(
-    at: &mut [Option<i32>],
-    clusters: &mut [Cluster],
-    above: &[i32],
-    load: &impl Fn(&[Option<i32>], &[Cluster], i32) -> f64,
-) {
+fn settle(at: &mut [Option<i32>], clusters: &mut [Cluster], (above, used): (&[i32], &[bool]), load: &Load<'_>) {
     for _ in 0..clusters.len() {
-        let empty = above.iter().copied().find(|&l| load(at, clusters, l) == 0.0);
+        let empty = above.iter().copied().find(|&l| !is_in_use(at, used, l));
         let heavy = above.windows(2).find(|w| load(at, clusters, w[1]) > LARGER * load(at, clusters, w[0]));
         let (from, to) = match (empty, heavy) {
             (Some(to), _) => {
@@ -280,6 +294,51 @@ fn settle(
         at[i] = Some(to);
         clusters[i].fixed = Some(to);
     }
+}
+
+/// Moves rooms that the prompt puts on a storey down to the one below where that has next to nothing to carry them with; those go
+/// first that belong on the ground. Returns what moved, and where to.
+fn stand_on_ground(
+    at: &mut [Option<i32>],
+    clusters: &[Cluster],
+    (above, used): (&[i32], &[bool]),
+    load: &Load<'_>,
+) -> Vec<(usize, i32)> {
+    let mut moved = Vec::new();
+    for pair in above.windows(2).rev() {
+        let [lower, upper] = [pair[0], pair[1]];
+        let carried = |at: &[Option<i32>]| load(at, clusters, lower) / load(at, clusters, upper).max(1.0);
+        if carried(at) >= FOUNDATION {
+            continue;
+        }
+        while carried(at) < CARRIES {
+            let gap = load(at, clusters, upper) - load(at, clusters, lower);
+            let moves = |i: usize| used[i] || clusters[i].likes == Likes::Ground;
+            let here = |i: &usize| at[*i] == Some(upper) && clusters[*i].likes != Likes::Each && moves(*i);
+            let several = (0..clusters.len()).filter(here).count() > 1;
+            let fits = |i: &usize| clusters[*i].area < gap && several;
+            let rank = |i: usize| (clusters[i].likes != Likes::Ground, clusters[i].likes == Likes::Upper);
+            let off = |i: usize| (clusters[i].area - gap / 2.0).abs();
+            let order = |a: &usize, b: &usize| rank(*a).cmp(&rank(*b)).then(off(*a).total_cmp(&off(*b)));
+            let Some(i) = (0..clusters.len()).filter(here).filter(fits).min_by(order) else { break };
+            at[i] = Some(lower);
+            moved.push((i, lower));
+        }
+    }
+    moved
+}
+
+/// Adds up the areas of a storey.
+type Load<'f> = dyn Fn(&[Option<i32>], &[Cluster], i32) -> f64 + 'f;
+
+/// Returns true for rooms that a storey is there for: all but those that serve others.
+pub(super) fn is_used(kind: &RoomType) -> bool {
+    !kind.wet && matches!(kind.zone, Zone::Day | Zone::Night | Zone::Public | Zone::Staff)
+}
+
+/// Returns true for a storey with a room that it is there for.
+fn is_in_use(at: &[Option<i32>], used: &[bool], level: i32) -> bool {
+    at.iter().zip(used).any(|(l, used)| *used && *l == Some(level))
 }
 
 /// Returns the storey of each room that the prompt puts on one.
@@ -401,11 +460,17 @@ fn clusters<'p>(
                 }
             };
         let area = rooms.iter().map(|&r| areas[r]).sum();
-        let fixed = rooms.iter().find_map(|&r| fixed[r]);
+        let at_street = rooms.iter().any(|&r| comes_from_street(reading.domain, planned[r].kind));
+        let fixed = rooms.iter().find_map(|&r| fixed[r]).or_else(|| at_street.then_some(0));
         let unit = planned[main].unit.as_deref();
         out.push(Cluster { rooms, unit, area, fixed, likes });
     }
     out
+}
+
+/// Returns true for rooms that vehicles stand in, or that have a door of their own for what comes from the street.
+fn comes_from_street(domain: &Domain, kind: &RoomType) -> bool {
+    kind.outdoor_door_m.is_some() || offer::has_shape(domain, kind, &[Shape::Vehicle])
 }
 
 /// Connects the rooms of each storey and joins the storeys.
@@ -449,7 +514,7 @@ fn two_stairs<'r>(reading: &Reading, rules: &'r Rules, rooms: &[GraphRoom]) -> O
     let people = |room: &GraphRoom| {
         let kind = domain.room_type_or_generic(&room.room_type);
         let usual = || sleeps(domain, kind).or_else(|| offer::desks(domain, kind)).map(|n| n[0]);
-        room.occupants.or_else(usual).unwrap_or(0)
+        room.occupants.or_else(usual).unwrap_or_else(|| offer::seated_in(domain, kind, room.target_area_m2))
     };
     let speaks = |rule: &&TwoStairs| {
         let storey = |level: i32| {
@@ -496,7 +561,9 @@ fn links(
     let along =
         |level: i32| here(level).filter(|r| domain.room_type_or_generic(&r.room_type).access != Access::Host).count();
     let longest = levels.iter().map(|l| along(*l)).max().unwrap_or(0);
-    let holds_two = if ruled.is_some() { longest } else { most } >= LEAST_FOR_TWO;
+    let spacious = |level: i32| here(level).map(|r| r.target_area_m2).sum::<f64>() >= LARGE_ROOMS_M2;
+    let of_large = levels.iter().any(|l| along(*l) >= LEAST_LARGE && spacious(*l));
+    let holds_two = if ruled.is_some() { longest >= LEAST_FOR_TWO || of_large } else { most >= LEAST_FOR_TWO };
     if large || (asked > 1 || ruled.is_some()) && holds_two {
         wanted.push((LinkKind::Stairs, &rules.stairs.room_type, "stairs_b"));
     } else if let Some(rule) = ruled {

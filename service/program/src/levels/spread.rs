@@ -12,7 +12,6 @@ use crate::built::workers;
 use crate::reading::Reading;
 use crate::subject::programs::is_office;
 use crate::tokens::storey::Where;
-use crate::tokens::words::words;
 
 /// Least desks of a part of an open office.
 const LEAST_PART: u32 = 8;
@@ -21,9 +20,6 @@ const LARGE: f64 = 1.2;
 /// The same of desks that the prompt gives this room, and the share of the mean storey from which on it takes one by itself.
 const LARGE_TOLD: f64 = 1.8;
 const WHOLE_STOREY: f64 = 0.7;
-/// How much smaller than the storey above the ground floor may be, and rooms that it gets at most.
-const SMALL: f64 = 0.85;
-const MOST_ADDED: usize = 4;
 
 /// Shares the desks of the open office out to the storeys, where it is much larger than one of them is to be.
 pub(crate) fn open_offices<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
@@ -89,37 +85,6 @@ pub(crate) fn open_offices<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planne
         said.join(", ")
     );
     reading.assumptions.push(Note::new("open_office_shared_out", message));
-}
-
-/// Adds rooms to the ground floor of an office that is smaller than the storey above, which would hang in the air.
-pub(crate) fn fill_ground<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) {
-    let domain = reading.domain;
-    let above = reading.storeys.above_ground();
-    let settled = reading.total.is_some() || reading.single || reading.only || reading.area_m2.is_some();
-    if above < 2 || settled || domain.circulation.storeys.is_none() || !is_office(reading.program) {
-        return;
-    }
-    let mut added: Vec<String> = Vec::new();
-    for id in &words().fill_ground {
-        let areas: Vec<f64> = rooms.iter().map(Planned::reckoned_m2).collect();
-        let dealt = deal::deal(&mut reading.clone(), rooms, &areas, &reading.storeys.levels.clone());
-        let load = |level: i32| (0..rooms.len()).filter(|&i| dealt[i] == level).map(|i| areas[i]).sum::<f64>();
-        let kind = domain.room_type(id).filter(|k| !reading.wishes.forbidden.contains(&k.id));
-        let Some(kind) = kind.filter(|_| added.len() < MOST_ADDED) else { continue };
-        if load(0) >= SMALL * load(1) || load(0) + kind.area_m2.target > load(1) {
-            continue;
-        }
-        rooms.push(Planned::new(&kind.id, kind));
-        // others of the type stay where they are
-        if rooms.iter().filter(|r| r.room_type == kind.id).count() == 1 {
-            reading.storeys.wanted.push(Wanted { room_type: kind.id.clone(), count: 1, at: Where::Level(0) });
-        }
-        added.push(kind.label.to_lowercase());
-    }
-    if !added.is_empty() {
-        let message = format!("the ground floor would be smaller than the storey above; added {}", added.join(", "));
-        reading.assumptions.push(Note::new("ground_floor_filled", message));
-    }
 }
 
 fn is_open(domain: &Domain, room: &Planned) -> bool {

@@ -25,6 +25,21 @@ pub(crate) fn people_on_each(mentions: &[Mention], phrases: &mut Vec<Phrase>) ->
     out
 }
 
+/// Plans a flat by itself whose rooms all lie on one storey of its house, "on the third floor": what is below belongs to others.
+pub(crate) fn lie_on_one_storey(storeys: &mut Storeys, domain: &Domain) -> Option<Note> {
+    let mut at = storeys.wanted.iter().map(|w| w.at);
+    let Some(Where::Level(level)) = at.next().filter(|first| at.all(|l| l == *first)) else { return None };
+    let has = |zone: Zone| storeys.wanted.iter().any(|w| domain.room_type_or_generic(&w.room_type).zone == zone);
+    // "a flat with the bedrooms on the upper floor" has another one below
+    if level < 2 && !(has(Zone::Day) && has(Zone::Night)) {
+        return None;
+    }
+    storeys.levels = vec![0];
+    storeys.wanted.clear();
+    let message = format!("the flat lies on level {level} of its house; it was planned by itself");
+    Some(Note::new("storey_of_house", message))
+}
+
 /// Gives a basement of which nothing is said the room that it has for things.
 pub(crate) fn furnish_basement(storeys: &mut Storeys, wishes: &mut Wishes, domain: &Domain) {
     let kind = words().dwelling.basement.iter().find_map(|id| domain.room_type(id));

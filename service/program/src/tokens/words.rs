@@ -378,8 +378,6 @@ struct Rooms {
     alike: Vec<Vec<String>>,
     /// Share of those who work there that has a seat in a room to eat in, by room type.
     eating: BTreeMap<String, f64>,
-    /// Rooms that the ground floor of an office gets that is smaller than the storey above, best first.
-    fill_ground: Vec<String>,
     /// Seats in a room to wait in for each counter of the building, by room type.
     waiting: BTreeMap<String, f64>,
     /// Whose the toilets of a place to work at are, one word each, as names of rooms begin.
@@ -403,7 +401,6 @@ pub(crate) struct Words {
     pub alike: Vec<Vec<String>>,
     pub eating: BTreeMap<String, f64>,
     pub waiting: BTreeMap<String, f64>,
-    pub fill_ground: Vec<String>,
     pub sexes: Vec<String>,
     pub common_domain: String,
     /// Usual words of languages that are not read, folded, by English name of the language.
@@ -487,7 +484,6 @@ pub(crate) fn words() -> &'static Words {
             alike: rooms.alike,
             eating: rooms.eating,
             waiting: rooms.waiting,
-            fill_ground: rooms.fill_ground,
             sexes: rooms.sexes,
             common_domain: rooms.common_domain,
             unread_languages: file
