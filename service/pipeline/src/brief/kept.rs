@@ -12,22 +12,7 @@ pub(super) fn missed(brief: &Brief, graph: &SceneGraph) -> usize {
     let (rooms, others): (Vec<&Ask>, Vec<&Ask>) = lost.partition(|ask| matches!(ask.fact, Fact::Rooms(_)));
     // a room that was read as one of another type is one thing
     let several = rooms.iter().filter(|ask| matches!(&ask.fact, Fact::Rooms(r) if is_lost_whole(r, graph))).count();
-    (rooms.len() + several).max(unasked(brief, graph))
-        + others.len()
-        + seats_as_rooms(brief, graph)
-        + usize::from(is_in_the_air(graph))
-}
-
-/// Returns twice how many rooms there are as many of as one was to have seats: "교육실 20명" is one room for 20.
-fn seats_as_rooms(brief: &Brief, graph: &SceneGraph) -> usize {
-    let told = |n: u32| brief.asks.iter().any(|a| matches!(&a.fact, Fact::Rooms(r) if r.count.n == n));
-    let is_so = |ask: &&Ask| match &ask.fact {
-        Fact::Capacity(CapacityAsk { count, room: Some(room), .. }) => {
-            count.n > 1 && !told(count.n) && called(room, graph).count() == count.n as usize
-        }
-        _ => false,
-    };
-    2 * brief.asks.iter().filter(is_so).count()
+    (rooms.len() + several).max(unasked(brief, graph)) + others.len() + usize::from(is_in_the_air(graph))
 }
 
 /// Returns true where not one is there of several rooms that have a name of their own.

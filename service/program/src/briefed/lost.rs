@@ -32,6 +32,7 @@ pub(crate) fn restore(reading: &mut Reading, brief: &Brief, registry: &Registry)
     if !reading.single {
         restore_rooms(reading, brief, registry);
         restore_each(reading, brief, &facts);
+        restore_seats(reading, brief, &facts);
         restore_levels(reading, &facts);
         let wished = |id: &String| reading.wishes.wishes.iter().any(|w| &w.room_type == id);
         let forbidden =
@@ -152,6 +153,19 @@ fn restore_pairs(reading: &mut Reading, facts: &Facts, added: &[Wish]) {
     let pairs = facts.wishes.pairs.iter().filter(|p| (new(&p.a) || new(&p.b)) && there(&p.a) && there(&p.b));
     let pairs: Vec<Pair> = pairs.cloned().collect();
     reading.wishes.pairs.extend(pairs);
+}
+
+/// Takes seats of one room for no number of rooms: "교육실 20명" is one room for 20.
+fn restore_seats(reading: &mut Reading, brief: &Brief, facts: &Facts) {
+    let told = |n: u32| brief.asks.iter().filter_map(rooms_of).any(|r| r.count.n == n);
+    for ask in &brief.asks {
+        let Fact::Capacity(CapacityAsk { count, room: Some(room), of_rooms: None, .. }) = &ask.fact else { continue };
+        let id = facts.type_of(room);
+        let seats = |w: &&mut Wish| w.room_type == id && w.count == count.n && count.n > 1 && !told(count.n);
+        if let Some(wish) = reading.wishes.wishes.iter_mut().find(seats) {
+            wish.count = 1;
+        }
+    }
 }
 
 /// Gives each of several rooms the one that the brief says it comes with, where fewer were read: an induction room for each of

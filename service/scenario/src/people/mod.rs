@@ -281,6 +281,9 @@ fn facing(from: Point, to: Point) -> Pose {
 
 pub(crate) use ground::{Building as PeopleBuilding, Room as PeopleRoom};
 
+/// Rooms by id, with those that one gets to from each.
+type Neighbors<'a> = BTreeMap<&'a str, BTreeSet<&'a str>>;
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -332,6 +335,3 @@ mod tests {
         assert_eq!(quiet.per_min, 1.0);
     }
 }
-
-/// Rooms by id, with those that one gets to from each.
-type Neighbors<'a> = BTreeMap<&'a str, BTreeSet<&'a str>>;
