@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use d3dgen_model::brief::{Ask, Bound, Brief, CapacityAsk, Fact, RoomsAsk, SiteKind};
+use d3dgen_model::brief::{Ask, Bound, Brief, CapacityAsk, Fact, PlaceKind, RoomsAsk, SiteKind};
 use d3dgen_model::domain::GENERIC_ROOM_TYPE;
 use d3dgen_model::offer;
 use d3dgen_model::scene_graph::Note;
@@ -159,7 +159,11 @@ fn restore_pairs(reading: &mut Reading, facts: &Facts, added: &[Wish]) {
 fn restore_seats(reading: &mut Reading, brief: &Brief, facts: &Facts) {
     let told = |n: u32| brief.asks.iter().filter_map(rooms_of).any(|r| r.count.n == n);
     for ask in &brief.asks {
-        let Fact::Capacity(CapacityAsk { count, room: Some(room), of_rooms: None, .. }) = &ask.fact else { continue };
+        let Fact::Capacity(CapacityAsk { of: PlaceKind::Seats, count, room: Some(room), of_rooms: None, .. }) =
+            &ask.fact
+        else {
+            continue;
+        };
         let id = facts.type_of(room);
         let seats = |w: &&mut Wish| w.room_type == id && w.count == count.n && count.n > 1 && !told(count.n);
         if let Some(wish) = reading.wishes.wishes.iter_mut().find(seats) {
