@@ -3,6 +3,7 @@
 //! What a domain knows is data ([`d3dgen_model::domain::Domain`]); a [`Plugin`] is how the pipeline gets at it. Nothing
 //! here knows the pipeline.
 
+mod borrowing;
 mod builtin;
 mod custom;
 mod digest;
@@ -17,6 +18,7 @@ use std::sync::Arc;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::knowledge::KnowledgeBase;
 
+use self::borrowing::Borrowing;
 pub use builtin::{Builtin, all};
 pub use custom::Custom;
 pub use error::Error;
@@ -40,10 +42,10 @@ pub fn is_shipped(id: &str) -> bool {
 }
 
 /// All domains a process knows, in a stable order: built-in ones first, then others as they were added. Clones share the
-/// domains.
+/// domains. Each is lent the room types of the others that it does not know ([`d3dgen_model::domain::Lent`]).
 #[derive(Clone)]
 pub struct Registry {
-    plugins: Vec<Arc<dyn Plugin>>,
+    plugins: Vec<Arc<Borrowing>>,
     /// Worked out from exactly these domains; clones share it until one of them changes.
     digests: Arc<digest::Digests>,
 }
@@ -52,7 +54,7 @@ impl Registry {
     /// Returns the built-in domains; each is parsed when it is first used.
     pub fn builtin() -> Self {
         let plugins = all().into_iter().map(|b| Arc::new(b) as Arc<dyn Plugin>).collect();
-        Self { plugins, digests: Arc::default() }
+        Self { plugins: Borrowing::among(plugins), digests: Arc::default() }
     }
 
     /// Adds the domain in a folder and returns it.
@@ -65,8 +67,7 @@ impl Registry {
         if self.get(plugin.id()).is_some() {
             return Err(Error::Taken { folder: folder.to_path_buf(), id: plugin.id().to_owned() });
         }
-        self.plugins.push(Arc::new(plugin));
-        self.digests = Arc::default();
+        self.register(self.plugins.len(), Arc::new(plugin));
         Ok(self.plugins.last().expect("just pushed").as_ref())
     }
 
@@ -74,8 +75,7 @@ impl Registry {
     pub fn add(&mut self, plugin: Arc<dyn Plugin>) -> bool {
         let free = self.get(plugin.id()).is_none();
         if free {
-            self.plugins.push(plugin);
-            self.digests = Arc::default();
+            self.register(self.plugins.len(), plugin);
         }
         free
     }
@@ -85,18 +85,26 @@ impl Registry {
     /// What was worked out from the domains stays: see [`Registry::digest`].
     pub fn set_knowledge(&mut self, id: &str, knowledge: KnowledgeBase) -> bool {
         let Some(at) = self.plugins.iter().position(|p| p.id() == id) else { return false };
-        let domain = self.plugins.remove(at);
-        self.plugins.insert(at, Arc::new(OtherRules { domain, knowledge }));
+        let domain = Arc::clone(self.plugins[at].own());
+        self.plugins[at] = Arc::new(self.plugins[at].with_rules(Arc::new(OtherRules { domain, knowledge })));
         true
     }
 
     /// Gives a domain other objects than it brings; false when no such domain is registered.
     pub fn set_domain(&mut self, domain: Domain) -> bool {
         let Some(at) = self.plugins.iter().position(|p| p.id() == domain.id) else { return false };
-        let rules = self.plugins.remove(at);
-        self.plugins.insert(at, Arc::new(OtherObjects { rules, domain }));
-        self.digests = Arc::default();
+        let rules = Arc::clone(self.plugins[at].own());
+        self.register(at, Arc::new(OtherObjects { rules, domain }));
         true
+    }
+
+    /// Puts a domain in the place of another, or behind all; what was worked out from the domains is forgotten.
+    fn register(&mut self, at: usize, plugin: Arc<dyn Plugin>) {
+        let mut own: Vec<Arc<dyn Plugin>> = self.plugins.iter().map(|p| Arc::clone(p.own())).collect();
+        let end = own.len().min(at + 1);
+        own.splice(at..end, [plugin]);
+        self.plugins = Borrowing::among(own);
+        self.digests = Arc::default();
     }
 
     /// Returns the domain with this id.
@@ -112,7 +120,7 @@ impl Registry {
 
     /// Returns all domains in order.
     pub fn iter(&self) -> impl Iterator<Item = &dyn Plugin> {
-        self.plugins.iter().map(AsRef::as_ref)
+        self.plugins.iter().map(|p| p.as_ref() as &dyn Plugin)
     }
 }
 

@@ -117,7 +117,7 @@ impl QueryRoom {
         Self {
             room_type: room_type.to_owned(),
             // the spaces of the generic room type say nothing about a room that only the prompt names
-            spaces: domain.room_type(room_type).map(|t| t.spaces.clone()).unwrap_or_default(),
+            spaces: domain.room_type_or_lent(room_type).map(|t| t.spaces.clone()).unwrap_or_default(),
             count,
             circulation: domain.circulation.room_type == room_type,
             zone: kind.zone,

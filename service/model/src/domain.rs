@@ -7,6 +7,7 @@ mod build;
 mod clutter;
 mod furnishing;
 mod layouts;
+mod lent;
 mod object;
 mod program;
 mod role;
@@ -19,6 +20,7 @@ pub use build::{
 pub use clutter::{ClutterLine, ClutterPattern};
 pub use furnishing::{Arrangement, FacingRule, Furnishing, Group, Member, Relation};
 pub use layouts::{LayoutSwap, Layouts};
+pub use lent::Lent;
 pub use object::{Mount, ObjectType, Shape, Stock, StockedAsset};
 pub use program::{
     Adjacency, AdjacencyRelation, Circulation, Elevator, Large, LockedPart, Occupants, Program, ProgramRoom, Scheme,
@@ -28,6 +30,7 @@ pub use role::{Counted, Number, Role, RoleKind, Round, RoundStep, VISITORS_NEVER
 pub use room_type::{Access, AreaRange, Daylight, Goods, Materials, Privacy, RobotUse, RoomType, Zone};
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -87,6 +90,9 @@ pub struct Domain {
     /// Who has a room to work in where the prompt counts them and not their rooms: "practice for three doctors".
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub practitioners: Vec<Practitioner>,
+    /// What the other domains of a registry lend it; no part of the document.
+    #[serde(skip)]
+    pub lent: Arc<Lent>,
 }
 
 /// Those who see people in a room of their own.
@@ -130,29 +136,41 @@ pub enum Attached {
 }
 
 impl Domain {
-    /// Returns the room type with this id.
+    /// Returns the domain's own room type with this id.
     pub fn room_type(&self, id: &str) -> Option<&RoomType> {
         self.room_types.iter().find(|t| t.id == id)
     }
 
-    /// Returns the room type with this id, or the generic one that every domain has for rooms only a prompt names.
-    pub fn room_type_or_generic(&self, id: &str) -> &RoomType {
-        self.room_type(id).or_else(|| self.room_type(GENERIC_ROOM_TYPE)).expect("check() demands the generic room type")
+    /// Returns the room type with this id, the domain's own or one that another lends it.
+    pub fn room_type_or_lent(&self, id: &str) -> Option<&RoomType> {
+        self.room_type(id).or_else(|| Some(self.lent.room_type(id)?.1))
     }
 
-    /// Returns the object type with this id.
+    /// Returns the room type with this id, own or lent, or the generic one that every domain has for rooms only a prompt names.
+    pub fn room_type_or_generic(&self, id: &str) -> &RoomType {
+        let known = self.room_type_or_lent(id);
+        known.or_else(|| self.room_type(GENERIC_ROOM_TYPE)).expect("check() demands the generic room type")
+    }
+
+    /// Returns the id of the domain that lends rooms of a type; none for the domain's own types and unknown ones.
+    pub fn lender_of(&self, room_type: &str) -> Option<&str> {
+        self.lent.room_type(room_type).filter(|_| self.room_type(room_type).is_none()).map(|(lender, _)| lender)
+    }
+
+    /// Returns the object type with this id, the domain's own or one that is lent with a room.
     pub fn object(&self, id: &str) -> Option<&ObjectType> {
-        self.objects.iter().find(|o| o.id == id)
+        self.objects.iter().find(|o| o.id == id).or_else(|| self.lent.object(id))
     }
 
     /// Returns the object types by id, for those who look up thousands of them.
     pub fn objects_by_id(&self) -> BTreeMap<&str, &ObjectType> {
-        self.objects.iter().map(|o| (o.id.as_str(), o)).collect()
+        // own ones come last, and stay
+        self.lent.objects().chain(&self.objects).map(|o| (o.id.as_str(), o)).collect()
     }
 
-    /// Returns the group with this id.
+    /// Returns the group with this id, the domain's own or one that is lent with a room.
     pub fn group(&self, id: &str) -> Option<&Group> {
-        self.groups.iter().find(|g| g.id == id)
+        self.groups.iter().find(|g| g.id == id).or_else(|| self.lent.group(id))
     }
 
     /// Returns true when things may stand on an object's top: it is a surface, or small things are put there.

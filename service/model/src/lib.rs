@@ -29,6 +29,7 @@ pub mod proposal;
 pub mod report;
 pub mod robot_body;
 pub mod robot_kind;
+pub mod sanitary;
 pub mod scenario;
 pub mod scene_graph;
 pub mod seed;

@@ -15,7 +15,7 @@ pub use beds::{other_bed, sleeps};
 pub use desks::{MOST_IN_TEAM, desks, desks_of, most_desks, works_in};
 pub use docks::{LAST_RANK, dock_rank, docks_held, docks_needed_m2, has_docks, most_docks, widest_circle_m};
 pub use places::{Places, places};
-pub use seats::{Seating, has_counters, is_counter, seated_in, seating, seats_across, seats_of, seats_on};
+pub use seats::{Seating, counters, has_counters, seated_in, seating, seats_across, seats_of, seats_on};
 pub use wet::Wet;
 
 use crate::domain::{Domain, RoomType, Shape};

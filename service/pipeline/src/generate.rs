@@ -21,7 +21,7 @@ use d3dgen_plugins::{Plugin, Registry};
 
 use crate::placement::{Furnished, before_openings};
 use crate::scene_graph::Request;
-use crate::{brief, fit, floorplan, give_way, placement, scenario, scene_graph, ways_out, world};
+use crate::{brief, fit, floorplan, give_way, grow, placement, scenario, scene_graph, ways_out, world};
 
 /// How to make a world, beside the request itself.
 #[derive(Debug, Clone)]
@@ -184,6 +184,7 @@ pub fn furnish_and_check(
         }
         outcome
     };
+    let mut made = |graph: &SceneGraph, settings: &Settings| with_room(graph, plugin.domain(), settings, &mut made);
     if let Some(without) = fit::without_robots(graph) {
         let few = Settings { attempts: FOR_OWN_ROBOT.min(settings.attempts), ..settings.clone() };
         let with = made(graph, &few);
@@ -207,6 +208,37 @@ fn is_in_vain(outcome: &Result<Generated, Error>) -> bool {
         Ok(found) => !found.report.is_given() && !found.report.is_writable(),
         Err(error) => matches!(error, Error::Infeasible { .. }),
     }
+}
+
+/// Makes a world of a graph whose rooms grow where they come out with fewer places than they are for.
+fn with_room(
+    graph: &SceneGraph,
+    domain: &Domain,
+    settings: &Settings,
+    made: &mut dyn FnMut(&SceneGraph, &Settings) -> Result<Generated, Error>,
+) -> Result<Generated, Error> {
+    let mut best = made(graph, settings)?;
+    let pinned = settings.pinned_floorplan.is_some() || settings.pinned_placements.is_some();
+    let lacks = |found: &Generated| scene_graph::short_rooms(domain, &found.world.scene_graph, &found.world.placements);
+    let mut short = lacks(&best);
+    let mut larger = graph.clone();
+    for _ in 0..grow::ROUNDS {
+        let next = grow::with_more_floor(&larger, &short).filter(|_| !pinned && !short.is_empty());
+        let Some(next) = next else { break };
+        larger = next;
+        match made(&larger, settings) {
+            Ok(found) => {
+                let less = lacks(&found);
+                let writable = found.report.is_writable() || !best.report.is_writable();
+                if writable && grow::missing(&less) < grow::missing(&short) {
+                    (best, short) = (found, less);
+                }
+            }
+            Err(Error::Infeasible { .. }) => break,
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(best)
 }
 
 /// Returns the plugin of a graph's domain.

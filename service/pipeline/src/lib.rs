@@ -11,6 +11,7 @@ pub mod edit;
 mod fit;
 pub mod generate;
 mod give_way;
+mod grow;
 pub mod variations;
 mod ways_out;
 

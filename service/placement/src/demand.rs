@@ -157,7 +157,7 @@ impl<'a> Household<'a> {
         let sleeps = |kind: &RoomType| {
             kind.furnishing.iter().any(|f| f.required && usual_unit(domain, &f.item).is_some_and(|u| u.beds() > 0))
         };
-        let held = graph.rooms.iter().filter_map(|r| Some((domain.room_type(&r.room_type)?, r.occupants?)));
+        let held = graph.rooms.iter().filter_map(|r| Some((domain.room_type_or_lent(&r.room_type)?, r.occupants?)));
         let robots = graph.robots.iter().map(|r| r.count).fold(0, u32::saturating_add);
         let homes = graph.rooms.iter().filter(|r| has_docks(domain, domain.room_type_or_generic(&r.room_type))).count();
         Self {
@@ -495,10 +495,7 @@ fn occupied_line(
     };
     // treatment chairs are no seats of a waiting room
     let counted = || offer::places(domain, kind).map(|places| (0, places.each));
-    let counter = || {
-        let is = |f: &Furnishing| f.required && f.max > 1 && is_shape(domain, &f.item, &[Shape::Counter]);
-        kind.furnishing.iter().position(is).map(|line| (line, 1))
-    };
+    let counter = || offer::counters(domain, kind).map(|(line, _)| (line, 1));
     // not the chairs for visitors beside what the room is for
     let seats = || {
         let many = |f: &Furnishing| {
@@ -511,9 +508,16 @@ fn occupied_line(
             },
         )
     };
+    // what the room begins with is what it is for: its pupils, not the desk of their teacher
+    let lead = || {
+        let unit = usual_unit(domain, &kind.furnishing.first().filter(|f| f.required && f.max > 1)?.item)?;
+        let each = if unit.work_places() > 0 { unit.work_places() } else { unit.places() };
+        (each > 0).then_some((0, each))
+    };
     let (line, each) = capacity(|u| u.beds())
         .or_else(counted)
         .or_else(counter)
+        .or_else(lead)
         .or_else(|| capacity(|u| u.work_places()))
         .or_else(seats)?;
     let units = people.div_ceil(each).min(MAX_UNITS);

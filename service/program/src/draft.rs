@@ -77,6 +77,8 @@ pub(crate) struct List {
     pub only: bool,
     pub may_join: bool,
     pub named_first: bool,
+    /// True where the room that such a building is for joins a list that lacks it.
+    pub main_joins: bool,
 }
 
 impl<'r, 'a> Draft<'r, 'a> {
@@ -373,6 +375,7 @@ impl<'r, 'a> Draft<'r, 'a> {
             only,
             may_join: !only && closed::joins_a_name(building, tokens, language, served),
             named_first: closed::is_named_first(building, language),
+            main_joins: true,
         }
     }
 
@@ -397,7 +400,7 @@ impl<'r, 'a> Draft<'r, 'a> {
                 "the prompt asks for {listed} rooms; one world has {MAX_ROOMS} at most, ask for fewer"
             )));
         }
-        if whole {
+        if whole && list.main_joins {
             let tokens = &self.heard.tokens;
             let named = building.head.and_then(|h| self.aside.vocabulary.room_named(&tokens[h.start..h.end]));
             let desks_told = if lives { 0 } else { self.counted.desks_told() };

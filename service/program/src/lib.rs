@@ -45,7 +45,7 @@ pub use self::built::rooms::wished_assets;
 pub use self::built::vital::is_missed;
 pub use self::given::room_type_called;
 pub use self::given::{Brought, Label, Understood, of_plan, understand};
-pub use self::people::seats::shortages;
+pub use self::people::seats::{Short, short_rooms, shortages};
 pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
 pub use self::request::Request;
 use self::subject::programs;

@@ -5,7 +5,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_plugins::Registry;
 
 use super::built::planned::Planned;
-use super::built::{edges, locks, program, ring, rooms, workers};
+use super::built::{edges, locks, program, ring, rooms, toilets, workers};
 use super::levels::deal;
 use super::machines::{charging, robot_rules, robots};
 use super::people::homes;
@@ -14,6 +14,9 @@ use super::request::Request;
 use super::subject::places;
 use super::subject::programs::is_dwelling;
 
+/// How often toilets are looked for on the storeys that the rooms were dealt to.
+const ROUNDS: usize = 3;
+
 /// Returns the graph of rooms, with those that building rules ask for beside them.
 pub(crate) fn settle<'a>(
     request: &Request,
@@ -21,12 +24,19 @@ pub(crate) fn settle<'a>(
     reading: &mut Reading<'a>,
     planned: &mut Vec<Planned<'a>>,
 ) -> SceneGraph {
-    let draft = assemble(request, reading.clone(), planned);
+    let mut draft = assemble(request, reading.clone(), planned);
     if let Some(plugin) = registry.get(&draft.domain) {
         let missing = d3dgen_knowledge::missing_rooms(plugin.knowledge(), &Query::of_graph(&draft, plugin.domain()));
         if program::follow_rules(reading, planned, &missing) {
-            return assemble(request, reading.clone(), planned);
+            draft = assemble(request, reading.clone(), planned);
         }
+    }
+    // what is added moves others to other storeys
+    for _ in 0..ROUNDS {
+        if !toilets::complete(reading, planned, &draft) {
+            break;
+        }
+        draft = assemble(request, reading.clone(), planned);
     }
     draft
 }

@@ -43,7 +43,7 @@ pub struct Makers {
 impl Makers {
     /// Takes the objects and builds of a domain in.
     pub fn add(&mut self, domain: &Domain) {
-        let types = domain.objects.iter().map(|o| (o.id.clone(), o.clone())).collect();
+        let types = domain.objects_by_id().into_values().map(|o| (o.id.clone(), o.clone())).collect();
         self.types.insert(domain.id.clone(), types);
         self.builds.insert(domain.id.clone(), builds::Library::shipped().with(&domain.builds));
     }

@@ -67,8 +67,9 @@ impl<'a> Asked<'a> {
     fn readings(&self, kind: PlaceKind, within: impl Fn(&str) -> bool) -> Option<Vec<Held>> {
         let all = |each: fn(&Seat<'_>) -> u32| self.held(each, |room| within(&room.id));
         let of_rooms = |each: fn(&Seat<'_>) -> u32, is_meant: fn(&Domain, &RoomType) -> bool| {
-            let meant =
-                |room: &GraphRoom| self.domain.room_type(&room.room_type).is_some_and(|t| is_meant(self.domain, t));
+            let meant = |room: &GraphRoom| {
+                self.domain.room_type_or_lent(&room.room_type).is_some_and(|t| is_meant(self.domain, t))
+            };
             self.held(each, |room| within(&room.id) && meant(room))
         };
         let readings = match kind {

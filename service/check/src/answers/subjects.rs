@@ -54,7 +54,8 @@ impl<'a> Asked<'a> {
             if id == ENTRANCE {
                 return r.entrance;
             }
-            let worded = || self.domain.room_type(&r.room_type).is_some_and(|t| has_word(&t.keywords, &subject.name));
+            let worded =
+                || self.domain.room_type_or_lent(&r.room_type).is_some_and(|t| has_word(&t.keywords, &subject.name));
             is_kind_of(&r.room_type, id) || worded() || !name.is_empty() && is_kind_of(&as_id(&r.name), &name)
         };
         Found { rooms: self.world.scene_graph.rooms.iter().filter(is_so).collect(), ..Found::default() }

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use d3dgen_model::domain::{Access, Privacy, tags};
+use d3dgen_model::domain::{Access, Privacy, Shape, tags};
+use d3dgen_model::sanitary;
 use d3dgen_model::scene_graph::BY_HOST;
 
 use super::Findings;
@@ -67,6 +68,36 @@ pub fn public_path_in_restricted(c: &Context, out: &mut Findings) {
         if !reached.contains(room.plan.room_id.as_str()) {
             out.add(&room.plan.room_id, "one who visits it goes through a room that is closed to visitors");
         }
+    }
+}
+
+/// A building that is no home has a toilet, and one for wheelchairs on each storey that visitors come to, unless somebody wanted
+/// none and the world says so.
+pub fn toilets(c: &Context, out: &mut Findings) {
+    let graph = c.graph();
+    let flushes = |shape: Shape| matches!(shape, Shape::Toilet | Shape::Cubicle);
+    let ruled_out = c
+        .domain
+        .room_types
+        .iter()
+        .any(|k| sanitary::is_for_all(c.domain, k) && graph.forbidden_room_types.contains(&k.id));
+    if !sanitary::applies(graph, c.domain) || ruled_out || sanitary::is_left_out(graph) {
+        return;
+    }
+    out.look();
+    let stands = |r: &Room| {
+        let mut objects = c.objects_in(&r.plan.room_id);
+        objects.any(|o| o.kind.is_some_and(|k| flushes(k.shape)))
+    };
+    if !c.rooms.iter().any(stands) {
+        out.add("building", "has no toilet; ask for one, or for a building without");
+        return;
+    }
+    if !c.domain.room_types.iter().any(|k| sanitary::is_accessible(c.domain, k)) {
+        return;
+    }
+    for level in sanitary::without_accessible(graph, c.domain) {
+        out.add("building", format!("storey {level} has no toilet for wheelchairs, and visitors come there"));
     }
 }
 

@@ -110,6 +110,11 @@ pub const RULES: &[Rule] = &[
         "nobody who visits goes through what is closed to visitors",
         building::public_path_in_restricted,
     ),
+    whole(
+        "toilet_missing",
+        "a building that is no home has a toilet, and one for wheelchairs on each storey that visitors come to",
+        building::toilets,
+    ),
     whole("room_area", "net areas lie within the range asked for", rooms::area),
     whole("room_dimension", "rooms keep their least clear extent", rooms::dimension),
     rule("room_proportion", "rooms are at most 2.5 times as long as wide", rooms::proportion),

@@ -1,8 +1,9 @@
 //! Changes that break the rules about outlines, walls, sizes and how rooms hang together.
 
-use d3dgen_model::domain::{Access, AdjacencyRelation, Mount, Privacy};
+use d3dgen_model::domain::{Access, AdjacencyRelation, Mount, Privacy, Shape};
 use d3dgen_model::floorplan::{DoorKind, PlanRoom};
 use d3dgen_model::placements::Placement;
+use d3dgen_model::sanitary;
 use d3dgen_model::world::World;
 use d3dgen_model::{Point, Polygon, Segment};
 
@@ -95,6 +96,24 @@ pub(super) const BREAKS: &[Break] = &[
             let room = &w.floorplan.rooms[i];
             w.scene_graph.forbidden_room_types.push(room.room_type.clone());
             Some(room.room_id.clone())
+        })
+    }),
+    somewhere("toilet_missing", &["object_missing", "person_station", "object_unsupported"], |s| {
+        one(s, |w| {
+            let flushes =
+                |id: &str| s.domain.object(id).is_some_and(|o| matches!(o.shape, Shape::Toilet | Shape::Cubicle));
+            let before = w.placements.placements.len();
+            w.placements.placements.retain(|p| !flushes(&p.object));
+            (w.placements.placements.len() < before).then(|| "building".to_owned())
+        })
+    }),
+    somewhere("toilet_missing", &["graph_room_missing", "object_missing"], |s| {
+        one(s, |w| {
+            let plain = |id: &str| s.domain.room_type(id).is_some_and(|k| sanitary::is_accessible(s.domain, k));
+            let storage = s.domain.room_types.iter().find(|k| k.id == "storage")?;
+            let room = w.scene_graph.rooms.iter_mut().find(|r| plain(&r.room_type))?;
+            room.room_type.clone_from(&storage.id);
+            Some("building".to_owned())
         })
     }),
     somewhere(

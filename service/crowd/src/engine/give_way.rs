@@ -73,7 +73,12 @@ impl Engine<'_> {
         self.movers[i].since = self.t;
         self.movers[i].left = f64::MAX;
         let blocker = self.blocker(i);
-        if blocker.is_some_and(|k| self.movers[k].state == State::Walking && self.goes_the_same_way(i, k)) {
+        let behind = |k: usize| {
+            let in_front = self.movers[k].state == State::Walking && self.goes_the_same_way(i, k);
+            // of two who each find the other in front one does not wait
+            in_front && !(i < k && self.blocker(k) == Some(i))
+        };
+        if blocker.is_some_and(behind) {
             // those behind wait for the one in front, who sorts it out
             let t = self.t;
             let m = &mut self.movers[i];

@@ -88,6 +88,24 @@ fn those_who_meet_in_an_aisle_for_one_get_past_each_other() {
 }
 
 #[test]
+fn of_two_wide_ones_who_come_to_an_aisle_at_once_one_goes_first() {
+    // an aisle of 1 m; both are 0.8 m wide, on their way to the same place, and each has the other before it
+    let blocks = [[3.0, 0.0, 9.0, 2.5], [3.0, 3.5, 9.0, 6.0]];
+    for apart_m in [1.0, 1.2, 1.6, 2.4] {
+        let robot = |id: &str, y: f64, end: f64| {
+            let mut mover = walker(id, Point::new(1.0, y), vec![task(Point::new(11.0, end), Act::Stand, 1.0)]);
+            mover.radius = 0.4;
+            mover
+        };
+        let (low, high) = (3.0 - apart_m / 2.0, 3.0 + apart_m / 2.0);
+        let movers = moved(hall(&blocks), Vec::new(), vec![robot("low", low, 2.0), robot("high", high, 4.0)]);
+        for m in &movers {
+            assert_eq!((m.done.len(), m.missed), (1, 0), "{} of those {apart_m} m apart gets there", m.id);
+        }
+    }
+}
+
+#[test]
 fn who_stands_in_a_dead_end_lets_out_who_is_behind_it() {
     // a dead end of 0.6 m: two stand in it, one behind the other, and the inner one leaves
     let blocks = [[3.0, 0.0, 12.0, 2.7], [3.0, 3.3, 12.0, 6.0]];

@@ -52,7 +52,7 @@ fn concerns(site: &Site, a: &Applicable, door: &Door) -> bool {
         // the door of a room, not those of the closets and bathrooms that hang on it
         Scope::Rooms(types) => {
             let hangs_on = |inner: &str, outer: &str| {
-                site.domain.room_type(inner).is_some_and(|t| t.hosts.iter().any(|h| h == outer))
+                site.domain.room_type_or_lent(inner).is_some_and(|t| t.hosts.iter().any(|h| h == outer))
             };
             let ends: Vec<&str> = door.room_ids.iter().filter_map(room_type).collect();
             let kept = a.guards.is_empty() || site.rooms_of(a).any(|r| door.room_ids.contains(&r.plan.room_id));

@@ -27,7 +27,7 @@ fn sleepers_of(domain: &Domain, item: &str) -> u32 {
 
 /// Returns the line of the bed that a room is to have in the place of its usual one, where somebody asked for that.
 pub fn other_bed<'a>(domain: &'a Domain, room: &GraphRoom) -> Option<&'a Furnishing> {
-    let kind = domain.room_type(&room.room_type)?;
+    let kind = domain.room_type_or_lent(&room.room_type)?;
     let is_bed = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::Bed);
     let usual = kind.furnishing.first().filter(|f| f.required && is_bed(&f.item))?;
     let named = asked_objects(domain, kind, room);

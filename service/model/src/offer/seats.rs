@@ -13,6 +13,8 @@ const IN_ROWS_M2: f64 = 1.7;
 const AT_TABLES_M2: f64 = 2.6;
 /// Floor for each counter with who serves there and who is served, m^2.
 const AT_COUNTER_M2: f64 = 11.0;
+/// Tag of rooms to eat in.
+const EAT: &str = "eat";
 /// Half of the tolerance that lengths of benches are counted in seats with.
 const ROUNDING: f64 = 1e-9;
 
@@ -36,14 +38,18 @@ pub fn seats_of(domain: &Domain, item: &str) -> u32 {
     domain.counted_objects_of(item).map(|(id, count)| count * domain.object(id).map_or(0, seats_on)).sum()
 }
 
-/// Returns true for a line of counters at which several are served side by side.
-pub fn is_counter(domain: &Domain, line: &Furnishing) -> bool {
-    line.required && line.max > 1 && domain.anchor(&line.item).is_some_and(|o| o.shape == Shape::Counter)
+/// Returns the line of counters at which several are served side by side, with its number; none in rooms where one eats: who
+/// counts their places means the seats, not the buffets.
+pub fn counters<'a>(domain: &Domain, kind: &'a RoomType) -> Option<(usize, &'a Furnishing)> {
+    let is_counter =
+        |f: &Furnishing| f.required && f.max > 1 && domain.anchor(&f.item).is_some_and(|o| o.shape == Shape::Counter);
+    let eats = kind.tags.iter().any(|t| t == EAT);
+    kind.furnishing.iter().enumerate().find(|(_, f)| !eats && is_counter(f))
 }
 
 /// Returns true for rooms with counters side by side.
 pub fn has_counters(domain: &Domain, kind: &RoomType) -> bool {
-    kind.furnishing.iter().any(|f| is_counter(domain, f))
+    counters(domain, kind).is_some()
 }
 
 /// Seats of a room for so many people.
@@ -59,7 +65,7 @@ pub struct Seating {
 /// nobody sits in.
 pub fn seating(domain: &Domain, kind: &RoomType, wanted: u32) -> Option<Seating> {
     let n = f64::from(wanted);
-    if let Some(line) = kind.furnishing.iter().find(|f| is_counter(domain, f)) {
+    if let Some((_, line)) = counters(domain, kind) {
         return Some(Seating { most: line.max, area_m2: 2.0 * SPARE_M2 + AT_COUNTER_M2 * n });
     }
     let many = kind.furnishing.iter().filter(|f| f.max > 1 && f.area_per_item_m2 > 0.0);

@@ -16,7 +16,7 @@ impl Wet {
     /// Finds them by what the rooms are furnished with.
     pub fn of(domain: &Domain) -> Self {
         let mut wet = Self::default();
-        for kind in domain.room_types.iter().filter(|k| k.zone != Zone::Night) {
+        for kind in domain.room_types.iter().chain(domain.lent.room_types()).filter(|k| k.zone != Zone::Night) {
             if has_shape(domain, kind, &[Shape::Toilet, Shape::Cubicle]) {
                 wet.toilets.insert(kind.id.clone());
                 if has_shape(domain, kind, &[Shape::Shower, Shape::Bathtub]) {

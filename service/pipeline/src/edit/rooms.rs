@@ -2,6 +2,7 @@
 
 use d3dgen_knowledge::jurisdiction::rules_here;
 use d3dgen_model::domain::{AdjacencyRelation, Domain, RoomType};
+use d3dgen_model::sanitary;
 use d3dgen_model::scene_graph::{Connector, GraphEdge, GraphRoom, Note, SceneGraph};
 use d3dgen_model::stage::Error;
 
@@ -23,7 +24,7 @@ pub(super) fn add(
     entered_from: Option<&str>,
 ) -> Result<String, Error> {
     let called = || room_type_called(domain, room_type);
-    let kind = domain.room_type(room_type).or_else(called).ok_or_else(|| {
+    let kind = domain.room_type_or_lent(room_type).or_else(called).ok_or_else(|| {
         let known: Vec<&str> = domain.room_types.iter().map(|t| t.id.as_str()).collect();
         mismatch(format!("domain `{}` has no room type `{room_type}`; it has {}", domain.id, known.join(", ")))
     })?;
@@ -59,7 +60,7 @@ pub(super) fn add(
     graph
         .assumptions
         .push(Note { code: "room_by_edit".into(), message: format!("{} was added by an edit", room.name) });
-    let missed = missed(kind);
+    let missed = missed(domain, kind);
     graph.conflicts.retain(|n| *n != missed);
     // circulation comes last, as in a graph that was made
     let at = graph.rooms.iter().position(|r| r.circulation).unwrap_or(graph.rooms.len());
@@ -105,16 +106,17 @@ pub(super) fn remove(graph: &mut SceneGraph, domain: &Domain, room_id: &str) -> 
         }
     }
     if is_missed(graph, &room_type, domain) {
-        graph.conflicts.push(missed(domain.room_type_or_generic(&room_type)));
+        graph.conflicts.push(missed(domain, domain.room_type_or_generic(&room_type)));
     }
     graph.assumptions.push(Note { code: "room_by_edit".into(), message: format!("{name} was taken out by an edit") });
     Ok(())
 }
 
 /// Says that a building has no room any more of a type that such a building needs.
-fn missed(kind: &RoomType) -> Note {
+fn missed(domain: &Domain, kind: &RoomType) -> Note {
     let message = format!("an edit took out the last {}, which such a building needs", kind.label.to_lowercase());
-    Note { code: "vital_room_missing".into(), message }
+    let code = if sanitary::is_for_all(domain, kind) { sanitary::LEFT_OUT } else { "vital_room_missing" };
+    Note { code: code.into(), message }
 }
 
 /// Returns the room that most others are entered from.

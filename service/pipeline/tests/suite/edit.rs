@@ -7,6 +7,7 @@ use d3dgen_model::document::Document;
 use d3dgen_model::edits::Edit;
 use d3dgen_model::floorplan::{Floorplan, PlanRoom};
 use d3dgen_model::placements::Placement;
+use d3dgen_model::sanitary;
 use d3dgen_model::world::World;
 use d3dgen_pipeline::edit::{self, Edited};
 use d3dgen_pipeline::generate::{Generated, Settings, generate_world};
@@ -201,7 +202,8 @@ fn rooms_come_and_go() {
 #[test]
 fn taking_out_what_no_building_is_without_is_said_until_it_is_back() {
     let registry = Registry::builtin();
-    let missed = |w: &World| w.scene_graph.conflicts.iter().any(|n| n.code == "vital_room_missing");
+    let codes = ["vital_room_missing", sanitary::LEFT_OUT];
+    let missed = |w: &World| w.scene_graph.conflicts.iter().any(|n| codes.contains(&n.code.as_str()));
     let cases = [
         ("two-bedroom flat with one bathroom", "bathroom_1", true),
         ("two-bedroom flat with one bathroom", "bedroom_2", false),

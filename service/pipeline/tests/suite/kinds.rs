@@ -1,16 +1,19 @@
 //! Buildings of every kind: what they are counted by is there, and so is what makes the kind.
 
-use d3dgen_model::Point;
+use d3dgen_model::floorplan::PlanRoom;
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
+use d3dgen_model::{Point, sanitary};
+use d3dgen_plugins::Registry;
 
-use crate::common::{body, count, most, named, rooms, worlds};
+use crate::common::{body, count, in_room, most, named, rooms, worlds};
 
 /// Seeds that each prompt is tried with.
 const SEEDS: u64 = 2;
 
 /// Prompts with what they count: the rooms, the objects in them, and how many there are in all.
-const COUNTED: [(&str, &str, &str, usize); 7] = [
+const COUNTED: [(&str, &str, &str, usize); 8] = [
+    ("gym with a spinning room for 20 bikes", "spinning_studio", "spin_bike", 20),
     ("parking garage for 60 cars", "parking_hall", "parked_car", 60),
     ("dairy barn for 80 cows", "barn_hall", "cow_stall", 80),
     ("stable for 12 horses", "stable_hall", "horse_box", 12),
@@ -71,14 +74,81 @@ fn every_kind_has_what_makes_it() {
     }
 }
 
+/// Rooms for so many people with what they sit on and how many have a place on each.
+const SEATED: [(&str, &str, &str, usize, usize); 4] = [
+    ("university building with a lecture hall for 200 students", "lecture_hall", "chair_row", 4, 200),
+    ("hotel with 14 rooms and a breakfast room for 44 guests", "breakfast_room", "dining_chair", 1, 44),
+    ("courthouse with two courtrooms for 60 spectators each and a waiting area", "courtroom", "church_pew", 4, 120),
+    ("community centre with an event room for 150 people and a kitchen", "event_room", "chair_row", 4, 150),
+];
+
 #[test]
-fn a_lecture_hall_for_200_has_seats_for_nine_of_ten_and_says_what_it_lacks() {
-    for world in worlds("university building with a lecture hall for 200 students", SEEDS) {
-        // a row has four chairs
-        let seats = 4 * count(&world, "lecture_hall", "chair_row");
-        let said = world.scene_graph.conflicts.iter().any(|c| c.code == "too_few_places");
-        assert!(seats >= 180 && said == (seats < 200), "{seats} seats, said: {said}");
+fn rooms_grow_until_everybody_has_a_seat() {
+    for (prompt, room_type, object, each, wanted) in SEATED {
+        for world in worlds(prompt, SEEDS) {
+            let seats = each * count(&world, room_type, object);
+            assert!((wanted..wanted + 4).contains(&seats), "{prompt}: {seats} seats of {wanted}");
+        }
     }
+}
+
+/// Rooms that the kind of building has none of, by what makes them such a room.
+const BORROWED: [(&str, &str, &str); 3] = [
+    ("office for 12 people with a courtroom and a sauna", "courtroom", "church_pew"),
+    ("primary school with four classrooms, a waiting area and an x-ray room", "xray_room", "bucky_stand"),
+    ("Drukarnia z halą maszyn, magazynem papieru, biurem dla 8 osób i szatnią", "machine_hall", "panel_saw"),
+];
+
+#[test]
+fn a_room_of_another_kind_of_building_is_furnished_as_there() {
+    for (prompt, room_type, object) in BORROWED {
+        for world in worlds(prompt, 1) {
+            assert!(count(&world, room_type, object) > 0, "{prompt}: {:?}", world.scene_graph.assumptions);
+            let said = world.scene_graph.assumptions.iter().any(|note| note.code == "room_borrowed");
+            assert!(said, "{prompt} does not say where the room is from");
+        }
+    }
+}
+
+/// Lists of rooms that name no toilet.
+const WITHOUT_TOILETS: [&str; 6] = [
+    "museum with three exhibition rooms, a lobby and a store",
+    "mosque for 120 worshippers with a prayer hall, an ablution room and an imam's office",
+    "Bibliothek mit Lesesaal, Kinderbereich und Büro",
+    "workshop building with a workshop, a store and an office for two",
+    "restaurant with a dining room for 80 guests and a kitchen",
+    "two-storey community center: an event room and a cafe on the ground floor, two training rooms and an office upstairs",
+];
+
+#[test]
+fn a_list_without_toilets_gets_them_on_every_storey_that_visitors_come_to() {
+    let registry = Registry::builtin();
+    for prompt in WITHOUT_TOILETS {
+        for world in worlds(prompt, 1) {
+            let domain = registry.get(&world.scene_graph.domain).expect("built in").domain();
+            assert_eq!(sanitary::without_accessible(&world.scene_graph, domain), Vec::<i32>::new(), "{prompt}");
+            assert!(!sanitary::is_left_out(&world.scene_graph), "{prompt}: {:?}", world.scene_graph.conflicts);
+        }
+    }
+}
+
+#[test]
+fn a_restaurant_has_toilets_for_its_guests() {
+    for world in worlds("restaurant with a dining room for 150 guests and a kitchen", SEEDS) {
+        let closets = |room: &PlanRoom| in_room(&world, &room.room_id).filter(|p| is_closet(p)).count();
+        let all: usize = world.floorplan.rooms.iter().map(closets).sum();
+        // 150 people at 75 a closet, women and men for themselves, and one for wheelchairs
+        assert!(all >= 3, "{all} closets");
+        let names: Vec<&str> = world.floorplan.rooms.iter().map(|r| r.name.as_str()).collect();
+        assert!(
+            names.iter().any(|n| n.starts_with("Women")) && names.iter().any(|n| n.starts_with("Men")),
+            "{names:?}"
+        );
+    }
+}
+
+fn is_closet(p: &Placement) -> bool {
+    ["toilet", "wc_cubicle", "accessible_wc"].contains(&p.object.as_str())
 }
 
 #[test]

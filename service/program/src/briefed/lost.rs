@@ -119,6 +119,7 @@ fn restore_rooms(reading: &mut Reading, brief: &Brief, registry: &Registry) {
     let storeys = reading.domain.circulation.storeys.as_ref();
     let plain = |r: &RoomsAsk| !r.room.id.as_deref().is_some_and(|id| storeys.is_some_and(|s| s.joins(id)));
     let rooms = || brief.asks.iter().filter_map(|a| Some((a, rooms_of(a)?))).filter(|(_, r)| plain(r));
+    rooms().for_each(|(ask, asked)| retype(reading, brief, ask, asked));
     let lost: Vec<&Ask> = rooms().filter(|(a, r)| is_lost(reading, brief, a, r)).map(|found| found.0).collect();
     let part = Brief { asks: lost.iter().map(|a| (*a).clone()).collect(), ..brief.clone() };
     let found = Facts::of(&part, reading.domain, registry);
@@ -144,6 +145,35 @@ fn restore_rooms(reading: &mut Reading, brief: &Brief, registry: &Registry) {
             (wish.count, wish.exact) = (asked.count.n, true);
         }
     }
+}
+
+/// Gives rooms of which the reader of words knew no more than their name the type that the brief knows them by.
+fn retype(reading: &mut Reading, brief: &Brief, ask: &Ask, asked: &RoomsAsk) {
+    let domain = reading.domain;
+    let known =
+        asked.room.id.as_ref().filter(|id| domain.room_type_or_lent(id).is_some_and(|k| k.id != GENERIC_ROOM_TYPE));
+    let Some((id, bytes)) = known.zip(bytes_of(brief, ask, &asked.room.name)) else { return };
+    let here = |u: &&Understood| u.bytes.start < bytes.end && bytes.start < u.bytes.end;
+    let unknown = |id: &&String| domain.room_type_or_lent(id).is_none();
+    let mut types = reading.understood.iter().filter(here).filter_map(|u| u.room_type.as_ref());
+    let Some(named) = types.find(unknown).cloned() else { return };
+    let Some(at) = reading.wishes.wishes.iter().position(|w| w.room_type == named) else { return };
+    let mut wish = reading.wishes.wishes.remove(at);
+    match reading.wishes.wishes.iter_mut().find(|w| &w.room_type == id) {
+        Some(same) => same.count += wish.count,
+        None => {
+            wish.room_type.clone_from(id);
+            reading.wishes.wishes.insert(at, wish);
+        }
+    }
+    for pair in &mut reading.wishes.pairs {
+        [&mut pair.a, &mut pair.b].into_iter().filter(|end| **end == named).for_each(|end| end.clone_from(id));
+    }
+    reading.understood.iter_mut().filter(|u| u.room_type.as_ref() == Some(&named)).for_each(|u| {
+        u.room_type = Some(id.clone());
+    });
+    let name = capital(&asked.room.name);
+    reading.names.push(Called { span: Span { start: 0, end: 0 }, room_type: id.clone(), name, count: asked.count.n });
 }
 
 /// Adds how rooms that were `added` lie to others.

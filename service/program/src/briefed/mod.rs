@@ -42,6 +42,9 @@ use super::wished::closed;
 use super::wished::relations::Said;
 use super::wished::wishes::{Wish, Wishes};
 
+/// Rooms that make a list of a building of which no word says what it is.
+const LEAST_LISTED: usize = 3;
+
 /// Roles of people, from `roles.toml`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -164,6 +167,9 @@ fn site_of<'a>(brief: &Brief, request: &Request, registry: &'a Registry, notes: 
             id
         }
     };
+    if free && !facts_name_a_building(brief) {
+        notes.assumptions.extend(unknown::guessed(brief, registry));
+    }
     let plugin = registry.get(&id).ok_or_else(|| refused(format!("domain `{id}` is not registered")))?;
     let domain = plugin.domain();
     let own_type = named.filter(|b| b.domain.as_deref() == Some(&id)).and_then(|b| b.building_type.clone());
@@ -174,6 +180,11 @@ fn site_of<'a>(brief: &Brief, request: &Request, registry: &'a Registry, notes: 
     let country_code = flag
         .or_else(|| brief.place.as_ref().map(|p| p.division_code.clone().unwrap_or_else(|| p.country_code.clone())));
     Ok(Site::of_facts(domain, program, building, country_code, registry))
+}
+
+/// Returns true for a brief that says what is built, and does not leave that to be guessed from the rooms.
+fn facts_name_a_building(brief: &Brief) -> bool {
+    brief.building.as_ref().is_some_and(|b| !b.words.is_empty() || b.confidence >= 1.0)
 }
 
 /// Returns the domain that knows most of the rooms of a brief, the first of equals.
@@ -209,7 +220,9 @@ fn list_of(facts: &Facts, draft: &Draft, total: Option<u32>) -> List {
     let wishes = &draft.wishes.wishes;
     let single = facts.single && wishes.len() == 1 && wishes[0].count == 1 && total.is_none_or(|n| n == 1);
     let whole = || closed::is_whole(&draft.wishes, false, (draft.site.domain, draft.site.lives));
-    let closed = single || facts.closed || facts.named && whole();
+    // a list of rooms of a kind of building that nobody knows is all there is: no other kind's rooms join it
+    let alone = || !facts.named && wishes.iter().filter(|w| w.listed).count() >= LEAST_LISTED;
+    let closed = single || facts.closed || facts.named && whole() || alone();
     List {
         total: total.filter(|_| !single),
         single,
@@ -217,6 +230,7 @@ fn list_of(facts: &Facts, draft: &Draft, total: Option<u32>) -> List {
         only: facts.closed,
         may_join: !facts.closed && facts.named,
         named_first: facts.named,
+        main_joins: facts.named || !facts.heads.is_empty(),
     }
 }
 

@@ -52,6 +52,18 @@ pub fn says_nothing(brief: &Brief) -> bool {
     !named && !brief.asks.iter().any(told) && !brief.not_understood.is_empty()
 }
 
+/// Says of words that nothing was made of, in a brief that names no building, which kinds are called alike.
+pub(super) fn guessed(brief: &Brief, registry: &Registry) -> Option<Note> {
+    let words = &brief.not_understood.iter().min_by_key(|w| w.start)?.text;
+    let language = brief.languages.first().map_or("en", String::as_str);
+    let kinds: Vec<String> = nearest(words, language, registry).into_iter().take(NEAREST).collect();
+    let message = format!(
+        "no kind of building is called `{words}`; the nearest are {}; the rooms were planned by themselves",
+        kinds.join(", ")
+    );
+    Some(Note::new("unknown_building", message))
+}
+
 /// Returns the refusal of a brief that says nothing.
 pub(super) fn nothing_said(brief: &Brief, registry: &Registry) -> Error {
     let words: Vec<&str> = brief.not_understood.iter().map(|w| w.text.as_str()).collect();

@@ -12,7 +12,10 @@ use d3dgen_model::scene_graph::{Connector, Note};
 use d3dgen_model::style::StyleWord;
 use d3dgen_plugins::Registry;
 
-use super::{GENERIC_ROOM_TYPE, Held, Thing, What, Wish, Wishes, is_dwelling, program_of, roles, styles, what_of};
+use super::{
+    GENERIC_ROOM_TYPE, Held, Thing, What, Wish, Wishes, facts_name_a_building, is_dwelling, program_of, roles, styles,
+    what_of,
+};
 use crate::levels::storeys::{Storeys, Wanted};
 use crate::people::beds::nearest;
 use crate::people::seats::Called;
@@ -160,7 +163,7 @@ impl<'a> Facts<'a> {
         let building_type = brief.building.as_ref().and_then(|b| b.building_type.as_deref());
         let program = Some(program_of(domain, building_type));
         let lives = program.is_some_and(is_dwelling);
-        let named = brief.building.as_ref().is_some_and(|b| !b.words.is_empty() || b.confidence >= 1.0);
+        let named = facts_name_a_building(brief);
         let mut out = Self { named, single: !named, registry: Some(registry), program, ..Self::default() };
         out.own = own_names(brief);
         out.domain = Some(domain);
@@ -317,7 +320,7 @@ impl<'a> Facts<'a> {
         let name = asked.room.name.trim();
         let own = asked.room.id.is_none();
         let one = asked.count.n == 1;
-        let kind = self.domain.and_then(|d| d.room_type(id)).filter(|_| !own);
+        let kind = self.domain.and_then(|d| d.room_type_or_lent(id)).filter(|_| !own);
         let plain = |k: &RoomType| !self.in_plan_language || !one || [&k.label, &k.id].iter().any(|l| is_part(name, l));
         if name.is_empty() || kind.is_some_and(plain) || self.called.iter().any(|c| c.name == capital(name)) {
             return;

@@ -1,4 +1,4 @@
-//! From the reading to the graph: the rooms there are (`program`, `vital`, `large`, `workers`, `layout`), who is in them and what they are
+//! From the reading to the graph: the rooms there are (`program`, `vital`, `large`, `workers`, `layout`, `toilets`), who is in them and what they are
 //! entered from (`occupants`, `hosts`), what they are like
 //! (`rooms`), and how they connect (`edges`, `ring`, `locks`).
 
@@ -13,5 +13,6 @@ pub(crate) mod planned;
 pub(crate) mod program;
 pub(crate) mod ring;
 pub(crate) mod rooms;
+pub(crate) mod toilets;
 pub(crate) mod vital;
 pub(crate) mod workers;

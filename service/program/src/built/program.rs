@@ -69,7 +69,10 @@ pub(crate) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>)
 fn call_as_told(reading: &Reading, rooms: &mut [Planned]) {
     for told in &reading.names {
         let own = |r: &&mut Planned| r.requested && r.called.is_none() && r.room_type == told.room_type;
-        for room in rooms.iter_mut().filter(own).take(told.count.max(1) as usize) {
+        let known = reading.domain.room_type_or_lent(&told.room_type).is_some();
+        // a room that no domain knows has no other name than the one it is told by
+        let all = if known { told.count.max(1) as usize } else { usize::MAX };
+        for room in rooms.iter_mut().filter(own).take(all) {
             room.called = Some(told.name.clone());
         }
     }

@@ -59,6 +59,7 @@ pub(crate) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphR
         *total.entry(&room.room_type).or_default() += 1;
     }
     state_unknown(reading, planned);
+    state_lent(reading, planned);
     let lives = is_dwelling(reading.program);
     let mut seen: BTreeMap<&str, u32> = BTreeMap::new();
     let mut alike: BTreeMap<String, [u32; 2]> = BTreeMap::new();
@@ -119,6 +120,21 @@ fn state_unknown(reading: &mut Reading, planned: &[Planned]) {
     }
 }
 
+/// States of which kind of building the rooms are furnished that this kind has none of.
+fn state_lent(reading: &mut Reading, planned: &[Planned]) {
+    let mut stated: Vec<&str> = Vec::new();
+    for room in planned {
+        let Some(lender) = reading.domain.lender_of(&room.kind.id) else { continue };
+        if stated.contains(&room.room_type.as_str()) {
+            continue;
+        }
+        stated.push(&room.room_type);
+        let (words, own) = (label(room).to_lowercase(), &reading.domain.id);
+        let message = format!("{own} has no room called `{words}`; it was furnished and sized as that of {lender}");
+        reading.assumptions.push(Note::new("room_borrowed", message));
+    }
+}
+
 /// Returns the corridor, hall or lobby that connects the rooms.
 pub(crate) fn circulation(reading: &Reading) -> GraphRoom {
     let kind = reading.domain.room_type_or_generic(&reading.domain.circulation.room_type);
@@ -149,7 +165,9 @@ fn label(room: &Planned) -> String {
     if room.kind.id == room.room_type && room.room_type != GENERIC_ROOM_TYPE {
         return room.kind.label.clone();
     }
-    capital(&room.room_type.replace('_', " "))
+    // names in letters that no id has are as the prompt has them
+    let own = room.name.as_ref().filter(|words| !words.is_ascii());
+    own.map_or_else(|| capital(&room.room_type.replace('_', " ")), |words| capital(words))
 }
 
 /// Returns the sides that a room by itself is to have, where that is a room to be in.

@@ -170,14 +170,16 @@ pub(crate) fn complete<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a
             continue;
         }
         let kind = reading.domain.room_type_or_generic(id);
-        if !put(reading, rooms, Planned::new(&kind.id, kind)) {
+        // toilets that a list lacks are added when all rooms have their people
+        let comes_later = !lives && reading.total.is_none() && flushes(reading, &class);
+        if !put(reading, rooms, Planned::new(&kind.id, kind)) && !comes_later {
             missing.push(kind.label.to_lowercase());
         }
     }
     if lives {
         second_toilet(reading, rooms);
     } else {
-        missing.extend(toilet(reading, rooms));
+        missing.extend(toilet(reading, rooms).filter(|_| reading.total.is_some()));
         missing.extend(bathrooms(reading, rooms));
     }
     support(reading, rooms);
@@ -503,7 +505,7 @@ pub(crate) fn guests<'a>(reading: &Reading<'a>, id: &str) -> Vec<&'a RoomType> {
 }
 
 /// Adds a room, where the number of rooms is fixed in place of one that can be spared; returns false where none can.
-fn put<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, room: Planned<'a>) -> bool {
+pub(super) fn put<'a>(reading: &Reading<'a>, rooms: &mut Vec<Planned<'a>>, room: Planned<'a>) -> bool {
     let joins_list = if is_dwelling(reading.program) {
         reading.may_join
     } else {

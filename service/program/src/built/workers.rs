@@ -18,6 +18,8 @@ use crate::tokens::text::capital;
 use crate::tokens::words::words;
 use crate::wished::wishes::{Wish, Wishes};
 
+/// Tag of rooms that people meet in.
+const MEET: &str = "meet";
 /// People from which on women and men have a toilet each.
 const PEOPLE_FOR_TWO: u32 = 10;
 /// People and rooms from which on there is a toilet for wheelchairs.
@@ -326,7 +328,7 @@ fn seat_waiting(domain: &Domain, rooms: &mut [Planned]) {
 }
 
 /// Returns whose toilets these are.
-fn whose(k: usize, label: &str) -> String {
+pub(super) fn whose(k: usize, label: &str) -> String {
     let sexes = &words().sexes;
     format!("{} {}", capital(&sexes[k % sexes.len()]), label.to_lowercase())
 }
@@ -350,14 +352,31 @@ pub(crate) fn name_toilets(domain: &Domain, rooms: &mut [GraphRoom]) {
     }
 }
 
+/// Returns the room of the same use that seats so many in rows, with their floor: a conference of 80 sits at no one table.
+fn in_rows<'a>(domain: &'a Domain, kind: &RoomType, wanted: u32) -> Option<(&'a RoomType, Seating)> {
+    let meets = |k: &RoomType| k.tags.iter().any(|t| t == MEET);
+    let all =
+        domain.room_types.iter().chain(domain.lent.room_types()).filter(|k| meets(kind) && meets(k) && k.id != kind.id);
+    let fits = |k: &'a RoomType| {
+        let seats = seating(domain, k, wanted).filter(|s| s.most == u32::MAX && s.area_m2 <= k.area_m2.max)?;
+        Some((k, seats))
+    };
+    all.filter_map(fits).min_by(|a, b| a.1.area_m2.total_cmp(&b.1.area_m2))
+}
+
 /// Gives rooms to meet, to wait and to be served in the places that the prompt says, and those to eat in seats for a share
 /// of the people.
-pub(super) fn seat_guests(reading: &mut Reading, rooms: &mut [Planned]) {
+pub(super) fn seat_guests<'a>(reading: &mut Reading<'a>, rooms: &mut [Planned<'a>]) {
     let domain = reading.domain;
     for held in reading.seats.clone() {
         let free = |r: &&mut Planned| r.requested && r.occupants.is_none() && r.room_type == held.room_type;
         for room in rooms.iter_mut().filter(free).take(held.count as usize) {
-            let Some(Seating { most, area_m2: area }) = seating(domain, room.kind, held.beds) else { continue };
+            let Some(mut seats) = seating(domain, room.kind, held.beds) else { continue };
+            if let Some((kind, rows)) = in_rows(domain, room.kind, held.beds).filter(|_| held.beds > seats.most) {
+                room.called.get_or_insert_with(|| room.kind.label.clone());
+                (room.kind, room.room_type, seats) = (kind, kind.id.clone(), rows);
+            }
+            let Seating { most, area_m2: area } = seats;
             room.occupants = Some(held.beds);
             room.visited = true;
             room.size_for_people(area);

@@ -3,7 +3,7 @@
 
 use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Program, RoomType, Shape, Zone};
 use d3dgen_model::offer;
-use d3dgen_model::offer::{is_counter, most_desks, seating, seats_of, works_in};
+use d3dgen_model::offer::{has_counters, most_desks, seating, seats_of, works_in};
 use d3dgen_model::placements::Placements;
 use d3dgen_model::scene_graph::{GraphRoom, Note, SceneGraph};
 
@@ -246,7 +246,7 @@ impl Reader<'_> {
 
     /// Reads counters: those of the room they are named with, else a room for them is meant.
     fn counters(&self, mentions: &mut Vec<Mention>, out: &mut Found) {
-        let has = |kind: &RoomType| kind.furnishing.iter().any(|f| is_counter(self.domain, f));
+        let has = |kind: &RoomType| has_counters(self.domain, kind);
         let own = |id: &str| self.domain.room_type(id).is_some_and(has);
         let listed = self.program.rooms.iter().map(|e| e.room_type.as_str()).find(|id| own(id));
         let Some(usual) =
@@ -378,30 +378,57 @@ pub(crate) fn called(
     out
 }
 
-/// Returns what to say of rooms that have fewer desks, seats or counters than they are for.
+/// A room that has fewer places than it is for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Short {
+    /// Id of the room.
+    pub room_id: String,
+    /// Its name on the plan.
+    pub name: String,
+    /// Places that it is for.
+    pub wanted: u32,
+    /// Places that stand in it.
+    pub have: u32,
+    /// What they are: seats, desks, counters or places.
+    pub what: &'static str,
+}
+
+/// Returns what a graph says of rooms with fewer places than they are for.
 pub fn shortages(domain: &Domain, graph: &SceneGraph, placements: &Placements) -> Vec<Note> {
+    let said =
+        |s: Short| Note::new("too_few_places", format!("{} is for {} and has {} {}", s.name, s.wanted, s.have, s.what));
+    short_rooms(domain, graph, placements).into_iter().map(said).collect()
+}
+
+/// Returns the rooms with fewer places than they are for.
+pub fn short_rooms(domain: &Domain, graph: &SceneGraph, placements: &Placements) -> Vec<Short> {
     let short = |room: &GraphRoom| {
-        let kind = domain.room_type(&room.room_type)?;
+        let kind = domain.room_type_or_lent(&room.room_type)?;
         // nobody counts the chairs of those who eat in turns
         let eats = words().eating.contains_key(&room.room_type);
         let wanted = room.occupants.filter(|_| kind.zone != Zone::Night && !eats)?;
-        let here = || placements.placements.iter().filter(|p| p.room_id == room.id);
-        let count = |shapes: &[Shape]| -> u32 {
-            here().filter(|p| domain.object(&p.object).is_some_and(|o| shapes.contains(&o.shape))).count() as u32
-        };
-        let (have, what) = if let Some(of) = offer::places(domain, kind).filter(|_| !kind.places.is_empty()) {
-            let anchor = domain.anchor(&of.line.item)?;
-            (of.each * here().filter(|p| p.object == anchor.id).count() as u32, "places")
-        } else if works_in(domain, kind) {
-            (count(&[Shape::Desk]), "desks")
-        } else if kind.furnishing.iter().any(|f| is_counter(domain, f)) {
-            (count(&[Shape::Counter]), "counters")
-        } else {
-            seating(domain, kind, 1)?;
-            (here().map(|p| seats_of(domain, &p.object)).sum(), "seats")
-        };
-        (have < wanted)
-            .then(|| Note::new("too_few_places", format!("{} is for {wanted} and has {have} {what}", room.name)))
+        let (have, what) = places_in(domain, kind, &room.id, placements)?;
+        let (room_id, name) = (room.id.clone(), room.name.clone());
+        (have < wanted).then_some(Short { room_id, name, wanted, have, what })
     };
     graph.rooms.iter().filter_map(short).collect()
+}
+
+/// Returns how many places of what stand in a room; `None` for rooms that nobody counts places of.
+fn places_in(domain: &Domain, kind: &RoomType, room_id: &str, placements: &Placements) -> Option<(u32, &'static str)> {
+    let here = || placements.placements.iter().filter(|p| p.room_id == room_id);
+    let count = |shapes: &[Shape]| -> u32 {
+        here().filter(|p| domain.object(&p.object).is_some_and(|o| shapes.contains(&o.shape))).count() as u32
+    };
+    if let Some(of) = offer::places(domain, kind).filter(|_| !kind.places.is_empty()) {
+        let anchor = domain.anchor(&of.line.item)?;
+        Some((of.each * here().filter(|p| p.object == anchor.id).count() as u32, "places"))
+    } else if works_in(domain, kind) {
+        Some((count(&[Shape::Desk]), "desks"))
+    } else if has_counters(domain, kind) {
+        Some((count(&[Shape::Counter]), "counters"))
+    } else {
+        seating(domain, kind, 1)?;
+        Some((here().map(|p| seats_of(domain, &p.object)).sum(), "seats"))
+    }
 }

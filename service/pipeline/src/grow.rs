@@ -1,0 +1,50 @@
+//! Rooms that came out with fewer places than they are for: they get more floor before the world says what is missing.
+
+use d3dgen_model::scene_graph::{GraphRoom, Note, Robot, SceneGraph};
+
+use crate::scene_graph::Short;
+
+/// How often rooms grow before what is missing is said.
+pub(crate) const ROUNDS: usize = 4;
+/// Least and most that a room grows at a time, as factors on its area.
+const LEAST: f64 = 1.08;
+const MOST: f64 = 1.5;
+/// Share of a room's floor that grows with its places: the way in and the stage do not.
+const FOR_PLACES: f64 = 0.6;
+/// Code of the note that names the rooms that grew.
+const GREW: &str = "rooms_grew";
+/// Most over least area up to which the prompt gives the area in figures: such a room stays.
+const TOLD: f64 = 1.3;
+
+/// Returns the graph with more floor in the rooms that are short of places; `None` where none of them may grow.
+pub(crate) fn with_more_floor(graph: &SceneGraph, short: &[Short]) -> Option<SceneGraph> {
+    // whoever asks for a robot that the rooms are made for is told which one fits
+    if graph.robots.iter().any(Robot::is_fitted) {
+        return None;
+    }
+    let mut out = graph.clone();
+    let mut grown: Vec<String> = Vec::new();
+    let open = |r: &&mut GraphRoom| !r.locked && r.area_range_m2[1] > TOLD * r.area_range_m2[0];
+    for room in out.rooms.iter_mut().filter(open) {
+        let Some(short) = short.iter().find(|s| s.room_id == room.id) else { continue };
+        let ratio = f64::from(short.wanted) / f64::from(short.have.max(1));
+        let factor = (1.0 + FOR_PLACES * (ratio - 1.0)).clamp(LEAST, MOST);
+        let tenth = |area: f64| (10.0 * area).round() / 10.0;
+        let [low, high] = room.area_range_m2;
+        room.target_area_m2 = tenth(factor * room.target_area_m2);
+        room.area_range_m2 = [low.max(tenth(0.9 * room.target_area_m2)), high.max(tenth(1.3 * room.target_area_m2))];
+        grown.push(room.name.clone());
+    }
+    if grown.is_empty() {
+        return None;
+    }
+    out.assumptions.retain(|note| note.code != GREW);
+    let message = format!("larger than first meant, for the places that were asked for: {}", grown.join(", "));
+    out.assumptions.push(Note { code: GREW.into(), message });
+    Some(out)
+}
+
+/// Returns how many places the rooms are short of.
+pub(crate) fn missing(short: &[Short]) -> u32 {
+    short.iter().map(|s| s.wanted.saturating_sub(s.have)).sum()
+}
