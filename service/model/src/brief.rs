@@ -304,6 +304,9 @@ pub struct RoomsAsk {
     /// Room that each one of them comes with: one en suite for each bedroom.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub each: Option<Subject>,
+    /// True for rooms that are some of those another fact asks for: "22 rooms, 2 of them accessible".
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub among: bool,
 }
 
 /// Objects of one kind.
@@ -327,7 +330,7 @@ pub struct ObjectsAsk {
 }
 
 /// Places for people, vehicles or animals.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CapacityAsk {
     /// What the places are.
@@ -343,13 +346,20 @@ pub struct CapacityAsk {
     /// Groups that so many make: "4 groups of 12" has 12 places and 4 groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub groups: Option<u32>,
+    /// Of how many of such rooms it is said: "three meeting rooms, one for 14"; absent where it is said of all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of_rooms: Option<u32>,
+    /// True for places that are some of those another fact asks for: "16 places, 2 of them in isolation rooms".
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub among: bool,
 }
 
 /// What places are counted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PlaceKind {
     /// To sit.
+    #[default]
     Seats,
     /// To work at.
     Desks,

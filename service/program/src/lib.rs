@@ -48,6 +48,7 @@ pub use self::given::{Brought, Label, Understood, of_plan, understand};
 pub use self::people::seats::{Short, short_rooms, shortages};
 pub use self::proposed::{BY_PROPOSAL, Draft, DraftEdge, DraftRoom, Settled, propose};
 pub use self::request::Request;
+use self::subject::programs;
 
 /// Returns the ISO 639-1 codes of the languages that prompts are read in.
 pub fn languages() -> Vec<&'static str> {
@@ -78,6 +79,12 @@ pub fn generate_with(brief: &Brief, request: &Request, registry: &Registry) -> R
 /// Returns true for languages, by ISO 639-1 code, that [`generate`] reads.
 pub fn reads(language: &str) -> bool {
     tokens::words::words().languages.contains_key(language)
+}
+
+/// Returns true for a graph of a building that people live in.
+pub fn is_home(graph: &SceneGraph, registry: &Registry) -> bool {
+    let domain = registry.get(&graph.domain).map(|p| p.domain());
+    domain.is_some_and(|d| programs::is_dwelling(programs::program_of(d, graph.building_type.as_deref())))
 }
 
 /// Turns a brief into a scene graph; the flags of the request overrule it, its prompt is not read.

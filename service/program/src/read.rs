@@ -73,11 +73,12 @@ pub(crate) fn read<'a>(request: &Request, registry: &'a Registry) -> Result<Read
         pair: people.pair,
         wheelchair: heard.says(Tag::Wheelchair),
         accessible: heard.says(Tag::Accessible) || site.lives && heard.says(Tag::Frail),
+        // one robot has one errand
+        errands: if robots.len() == 1 { vec![stops.errand] } else { Vec::new() },
         robots,
         robot_rules: orders.rules,
         two_way: orders.two_way,
         docked: stops.docked,
-        errand: stops.errand,
         style,
         assumptions: notes.assumptions,
         conflicts: notes.conflicts,

@@ -85,8 +85,8 @@ pub(crate) struct Reading<'a> {
     pub two_way: bool,
     /// Types of the rooms that a dock is to stand in.
     pub docked: Vec<String>,
-    /// Where the robot is to go.
-    pub errand: robots::Errand,
+    /// Where each of the robots is to go, in their order; none where nothing is said of that.
+    pub errands: Vec<robots::Errand>,
     pub storeys: Storeys,
     /// True where someone stays overnight with every patient.
     pub stays: bool,

@@ -61,7 +61,7 @@ fn assemble(request: &Request, mut reading: Reading, planned: &[Planned]) -> Sce
     ring::close(&reading, &links, &mut rooms, &mut web.edges);
     locks::lock(&mut reading, &mut rooms, &mut web.edges);
     charging::add_docks(reading.domain, &reading.robots, &reading.docked, &mut rooms);
-    robots::send(&reading.errand, &rooms, &mut reading.robots);
+    robots::send(&reading.errands, &rooms, &mut reading.robots);
     let robot_rules = robot_rules::of_rooms(&reading.robot_rules, &rooms);
     edges::state_unmet(&mut reading, &rooms, &web.edges);
     let place = reading.country_code.take();

@@ -26,11 +26,30 @@ pub(crate) struct Stated {
     pub tokens: Range<usize>,
     /// Words that say something of it from elsewhere: the storey of a list.
     pub also: Option<Range<usize>>,
+    /// The storeys that those words name, where they do.
+    pub storey: Option<Storey>,
     pub fact: Fact,
     /// True when the words only speak of a room or an object that others ask for.
     pub mention: bool,
     /// True for a room with words of its own: "an office for the boss".
     pub own: bool,
+}
+
+/// Storeys that words name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Storey {
+    /// 0 at the ground.
+    At(i32),
+    /// The highest, of how many there are.
+    Top,
+    /// All of them.
+    Each,
+}
+
+impl Stated {
+    fn new(node: &Node, fact: Fact) -> Self {
+        Self { tokens: node.tokens.clone(), also: None, storey: None, fact, mention: false, own: false }
+    }
 }
 
 /// Makes facts of nodes.
@@ -44,9 +63,18 @@ pub(crate) struct Maker<'a> {
 
 /// What a room gets from around it.
 #[derive(Debug, Clone, Copy, Default)]
-struct Around<'n> {
-    level: Option<&'n Node>,
+struct Around {
+    storey: Option<Storey>,
     mention: bool,
+}
+
+impl Around {
+    fn level(self) -> Option<i32> {
+        match self.storey? {
+            Storey::At(level) => Some(level),
+            Storey::Top | Storey::Each => None,
+        }
+    }
 }
 
 impl Maker<'_> {
@@ -74,16 +102,11 @@ impl Maker<'_> {
                     self.state(n, around);
                 });
             }
-            Some("on_storey") => {
-                let level = node.field("level").map(|n| &**n);
-                let from = self.facts.len();
-                node.all("item").for_each(|n| {
-                    self.state(n, Around { level, ..around });
-                });
-                let words = level.map(|l| l.tokens.clone());
-                self.facts[from..].iter_mut().for_each(|f| f.also = words.clone());
-            }
+            Some("on_storey") => self.on_storey(node, around),
+            Some("storey_ref") => self.storey_alone(node),
+            Some("does" | "does_more") => self.work_of_nobody(node),
             Some("each_group") => self.each_group(node),
+            Some("each_person") => self.each_person(node),
             Some("every_room") => self.every_room(node),
             Some("fleet") => self.fleet(node),
             Some("shorthand_home") => self.shorthand(node),
@@ -97,7 +120,72 @@ impl Maker<'_> {
     }
 
     fn say(&mut self, node: &Node, fact: Fact) {
-        self.facts.push(Stated { tokens: node.tokens.clone(), also: None, fact, mention: false, own: false });
+        self.facts.push(Stated::new(node, fact));
+    }
+
+    /// States rooms and more once for each storey that is named before or behind them.
+    fn on_storey(&mut self, node: &Node, around: Around) {
+        let items: Vec<Rc<Node>> = node.all("item").cloned().collect();
+        let levels: Vec<(Rc<Node>, Storey)> =
+            node.all("level").flat_map(|l| self.storeys_named(l).into_iter().map(|s| (l.clone(), s))).collect();
+        let storeys = levels.len() as u32;
+        for (at, (level, storey)) in levels.into_iter().enumerate() {
+            let from = self.facts.len();
+            // places have no storey: "40 desks each" on two are 80
+            let again = |item: &Rc<Node>| at > 0 && item.made() == Some("capacity");
+            for item in items.iter().filter(|i| !again(i)) {
+                self.state(item, Around { storey: Some(storey), ..around });
+            }
+            for stated in &mut self.facts[from..] {
+                (stated.also, stated.storey) = (Some(level.tokens.clone()), Some(storey));
+                if let (Fact::Capacity(capacity), Some(_)) = (&mut stated.fact, node.field("every"))
+                    && capacity.room.is_none()
+                {
+                    capacity.count.n = capacity.count.n.saturating_mul(storeys);
+                }
+            }
+        }
+    }
+
+    /// States a storey that nothing is said to lie on.
+    fn storey_alone(&mut self, node: &Node) {
+        let storey = self.storeys_named(node).first().copied();
+        let wish = self.reading.written(node.tokens.clone()).to_owned();
+        self.facts.push(Stated { storey, ..Stated::new(node, Fact::Other(OtherAsk { wish })) });
+    }
+
+    /// States the rooms and things of work that no robot is found for.
+    fn work_of_nobody(&mut self, node: &Node) {
+        for (_, part) in node.fields.iter().filter(|(name, _)| ["what", "from", "to", "at"].contains(&&**name)) {
+            self.state(part, Around::default());
+        }
+    }
+
+    /// Returns the storeys that words name.
+    fn storeys_named(&self, level: &Node) -> Vec<Storey> {
+        if level.field("each").is_some() {
+            return vec![Storey::Each];
+        }
+        let named = level.field("named").into_iter().flat_map(|n| n.values("storey"));
+        let named: Vec<Storey> = named
+            .filter_map(|v| match v {
+                "ground" => Some(Storey::At(0)),
+                "upper" => Some(Storey::At(1)),
+                "basement" => Some(Storey::At(-1)),
+                "top" => Some(Storey::Top),
+                _ => None,
+            })
+            .take(1)
+            .collect();
+        if !named.is_empty() {
+            return named;
+        }
+        let from_ground = self.first_is_ground || level.field("from_one").is_some();
+        let nth = level.all("nth").filter_map(|nth| {
+            let n = nth.values("ordinal").find_map(|v| v.parse::<i32>().ok()).or(nth.number.map(|n| n as i32))?;
+            Some(Storey::At(if from_ground && n > 0 { n - 1 } else { n }))
+        });
+        nth.collect()
     }
 
     fn subject(&self, node: &Node) -> Subject {
@@ -110,10 +198,7 @@ impl Maker<'_> {
             for id in ids.split('+') {
                 let room = Subject::known(id, self.reading.written(suite.tokens.clone()));
                 let count = count(node).unwrap_or_default();
-                self.say(
-                    node,
-                    Fact::Rooms(RoomsAsk { room, count, level: self.level(node, around), ..RoomsAsk::default() }),
-                );
+                self.say(node, Fact::Rooms(RoomsAsk { room, count, level: around.level(), ..RoomsAsk::default() }));
             }
         }
         if node.field("suite").is_some() {
@@ -144,12 +229,15 @@ impl Maker<'_> {
             count,
             area_m2: node.field("area").and_then(|a| measure(a, "area")),
             sides_m: sides(node),
-            level: self.level(node, around),
+            level: around.level(),
             attributes: attributes(node),
-            each: None,
+            ..RoomsAsk::default()
         };
-        let (each, inside): (Vec<Rc<Node>>, Vec<Rc<Node>>) =
-            node.all("with").cloned().partition(|n| several && n.is("rooms", Some("bare")));
+        let some = node.field("some").and_then(|n| number(n));
+        let with = if some.is_none() { node.all("with").cloned().collect() } else { Vec::new() };
+        let (mut each, inside): (Vec<Rc<Node>>, Vec<Rc<Node>>) =
+            with.into_iter().partition(|n| several && n.is("rooms", Some("bare")));
+        each.extend(node.all("with_each").filter(|n| self::count(n).is_none_or(|c| c.n == 1)).cloned());
         ask.each = each.first().map(|n| self.subject(n));
         // "a bedroom for each of the four children"
         if let Some(all) = node.field("each_of").and_then(|people| self::count(people)) {
@@ -163,13 +251,9 @@ impl Maker<'_> {
         if let Some(sex) = node.field("sex") {
             ask.count = by_sex(sex, asked, ask.count);
         }
-        self.facts.push(Stated {
-            tokens: node.tokens.clone(),
-            also: None,
-            fact: Fact::Rooms(ask),
-            mention: around.mention,
-            own: node.field("own").is_some(),
-        });
+        let own = node.field("own").is_some();
+        self.facts.push(Stated { mention: around.mention, own, ..Stated::new(node, Fact::Rooms(ask)) });
+        self.some_of(node, &room, count);
         if room.id.is_none() {
             self.named_for(node, &room);
         }
@@ -191,13 +275,59 @@ impl Maker<'_> {
             let Some(id) = own.values("object").find(|id| self.known.objects.contains(*id)) else { continue };
             let object = Subject::known(id, self.reading.written(own.tokens.clone()));
             let asked = ObjectsAsk { object, room: Some(room.clone()), ..ObjectsAsk::default() };
-            self.facts.push(Stated {
-                tokens: own.tokens.clone(),
-                also: None,
-                fact: Fact::Objects(asked),
-                mention: false,
-                own: false,
-            });
+            self.say(own, Fact::Objects(asked));
+        }
+    }
+
+    /// States what is said of some of several rooms: their places, what they are like, a room that they come with.
+    fn some_of(&mut self, node: &Node, room: &Subject, count: AskedCount) {
+        let one = AskedCount::exactly(1);
+        let some = node.field("some").map(|n| number(n).unwrap_or(one));
+        for held in node.all("some_hold") {
+            self.held_by(held, room, some.unwrap_or(one).n);
+        }
+        // "180, 110 and 64 seats": what is counted stands behind the last one
+        let of = node.all("one_hold").last().and_then(|n| places_of(n)).unwrap_or_default();
+        for held in node.all("one_hold") {
+            self.held_by(held, room, 1);
+            if let Some(Stated { fact: Fact::Capacity(capacity), .. }) = self.facts.last_mut() {
+                capacity.of = of;
+            }
+        }
+        if let (Some(count), Some(with)) = (some, node.field("with").cloned()) {
+            self.one_each(&with, room, count);
+        }
+        for with in
+            node.all("with_each").filter(|n| self::count(n).is_some_and(|c| c.n > 1)).cloned().collect::<Vec<_>>()
+        {
+            let each = self::count(&with).unwrap_or(one);
+            self.one_each(&with, room, AskedCount { n: each.n.saturating_mul(count.n), ..count });
+        }
+        self.alike(node, room);
+    }
+
+    /// States what some of several rooms are like: "20 rooms, 2 of them accessible".
+    fn alike(&mut self, node: &Node, room: &Subject) {
+        let attributes: Vec<String> = node.all("like").map(|n| self.word_of(n)).collect();
+        if attributes.is_empty() {
+            return;
+        }
+        let count = node.field("some").and_then(|n| number(n)).unwrap_or(AskedCount::exactly(1));
+        let ask = RoomsAsk { room: room.clone(), count, attributes, among: true, ..RoomsAsk::default() };
+        self.say(node, Fact::Rooms(ask));
+    }
+
+    /// Returns the attribute that a word stands for, or the word itself.
+    fn word_of(&self, node: &Node) -> String {
+        let own = || self.reading.written(node.tokens.clone()).to_lowercase().replace(' ', "_");
+        node.values("attribute").next().map_or_else(own, str::to_owned)
+    }
+
+    /// States the places of so many of several rooms.
+    fn held_by(&mut self, held: &Node, room: &Subject, rooms: u32) {
+        self.held(held, room, rooms > 1);
+        if let Some(Stated { fact: Fact::Capacity(capacity), .. }) = self.facts.last_mut() {
+            capacity.of_rooms = Some(rooms);
         }
     }
 
@@ -206,6 +336,21 @@ impl Maker<'_> {
         let room = self.subject(guest);
         self.say(guest, Fact::Rooms(RoomsAsk { room: room.clone(), count, ..RoomsAsk::default() }));
         self.say(guest, Fact::Relation(RelationAsk { a: room, relation: RelationKind::Door, b: host.clone() }));
+    }
+
+    /// States a room for each of so many people.
+    fn each_person(&mut self, node: &Node) {
+        let people: Vec<Rc<Node>> = node.all("people").cloned().collect();
+        let all = people.iter().find_map(|p| count(p));
+        for part in people.iter().chain(node.all("item")) {
+            let from = self.facts.len();
+            self.state(part, Around::default());
+            for stated in &mut self.facts[from..] {
+                if let (Fact::Rooms(rooms), Some(all)) = (&mut stated.fact, all) {
+                    rooms.count = all;
+                }
+            }
+        }
     }
 
     /// States what every room has: each of the several that were named last.
@@ -267,32 +412,9 @@ impl Maker<'_> {
     /// States the places of a room: "4 screens of 80 seats", "meeting room for ten".
     fn held(&mut self, held: &Node, room: &Subject, several: bool) {
         let count = count(held).or_else(|| number(held)).or_else(|| household(held)).unwrap_or_default();
-        let of = held
-            .values("capacity")
-            .chain(held.field("what").into_iter().flat_map(|w| w.values("capacity")))
-            .find_map(place_kind);
-        let of = of.unwrap_or(PlaceKind::Seats);
-        let fact = CapacityAsk { of, count, room: Some(room.clone()), each_room: several, groups: None };
+        let of = places_of(held).unwrap_or_default();
+        let fact = CapacityAsk { of, count, room: Some(room.clone()), each_room: several, ..CapacityAsk::default() };
         self.say(held, Fact::Capacity(fact));
-    }
-
-    fn level(&self, node: &Node, around: Around) -> Option<i32> {
-        let level = node.field("level").map(|n| &**n).or(around.level)?;
-        let named = level.field("named").and_then(|n| {
-            n.values("storey").find_map(|v| match v {
-                "ground" => Some(0),
-                "upper" => Some(1),
-                "basement" => Some(-1),
-                _ => None,
-            })
-        });
-        let nth = || {
-            let nth = level.field("nth")?;
-            let n = nth.values("ordinal").find_map(|v| v.parse::<i32>().ok()).or(nth.number.map(|n| n as i32))?;
-            let from_ground = self.first_is_ground || level.field("from_one").is_some();
-            Some(if from_ground && n > 0 { n - 1 } else { n })
-        };
-        named.or_else(nth)
     }
 
     fn objects(&mut self, node: &Node) {
@@ -310,6 +432,9 @@ impl Maker<'_> {
         }
         if node.field("each_of").is_some() {
             ask.each_room = true;
+        }
+        if let Some(people) = node.field("hold").and_then(|held| count(held).or_else(|| number(held))) {
+            self.known.size_for(&mut ask.object, people.n, &mut ask.attributes);
         }
         self.say(node, Fact::Objects(ask));
         if let Some(within) = within {
@@ -341,14 +466,12 @@ impl Maker<'_> {
         if let Some(all) = all {
             let each = AskedCount { n: all.n.div_ceil(groups.unwrap_or(1).max(1)), ..all };
             let of = PlaceKind::Seats;
-            return self
-                .say(node, Fact::Capacity(CapacityAsk { of, count: each, room: None, each_room: false, groups }));
+            return self.say(node, Fact::Capacity(CapacityAsk { of, count: each, groups, ..CapacityAsk::default() }));
         }
         if held.is_none() && what.is_some_and(|w| w.is("capacity", Some("group"))) {
             let (of, groups) = (PlaceKind::Seats, Some(count.n));
             let each = AskedCount::at_least(1);
-            return self
-                .say(node, Fact::Capacity(CapacityAsk { of, count: each, room: None, each_room: false, groups }));
+            return self.say(node, Fact::Capacity(CapacityAsk { of, count: each, groups, ..CapacityAsk::default() }));
         }
         if what.is_some_and(|w| w.is("capacity", Some("locker"))) {
             let object = Subject::known("lockers", what.map_or("", |w| self.reading.written(w.tokens.clone())));
@@ -358,9 +481,27 @@ impl Maker<'_> {
         let room = room.or_else(|| within.as_ref().map(|n| self.subject(n)));
         let each_room =
             within.as_ref().is_some_and(|n| n.field("each").is_some() || self::count(n).is_some_and(|c| c.n > 1));
-        self.say(node, Fact::Capacity(CapacityAsk { of, count, room, each_room, groups }));
+        self.say(node, Fact::Capacity(CapacityAsk { of, count, room, each_room, groups, ..CapacityAsk::default() }));
         if let Some(within) = within {
             self.state(&within, Around { mention: true, ..Around::default() });
+        }
+        self.some_places(node, of);
+    }
+
+    /// States that some of the places that were counted are elsewhere, or different: "davon 2 in Isolationszimmern".
+    fn some_places(&mut self, node: &Node, of: PlaceKind) {
+        let count = node.field("some").and_then(|n| number(n)).unwrap_or(AskedCount::exactly(1));
+        if let Some(within) = node.field("part_in").cloned() {
+            let room = Some(self.subject(&within));
+            self.say(node, Fact::Capacity(CapacityAsk { of, count, room, among: true, ..CapacityAsk::default() }));
+            self.mention(&within);
+        }
+        let likes: Vec<Range<usize>> = node.all("like").map(|n| n.tokens.clone()).collect();
+        if let Some(end) = likes.last().map(|l| l.end) {
+            let words = node.fields.iter().filter(|(name, _)| ["some", "like"].contains(&&**name));
+            let start = words.map(|(_, n)| n.tokens.start).min().unwrap_or(node.tokens.start);
+            let wish = self.reading.written(start..end).to_owned();
+            self.facts.push(Stated { tokens: start..end, ..Stated::new(node, Fact::Other(OtherAsk { wish })) });
         }
     }
 
@@ -431,7 +572,14 @@ impl Maker<'_> {
         });
         let mut kinds: Vec<String> = kinds.collect();
         kinds.sort_by_key(|k| k == "any");
-        let tasks: Vec<AskedTask> = node.all("does").filter_map(|d| self.task(d)).collect();
+        let mut tasks: Vec<AskedTask> = node.all("does").filter_map(|d| self.task(d)).collect();
+        if let Some(verb) = tasks.last().map(|t| t.verb.clone()) {
+            tasks.extend(node.all("more").map(|d| self.task_of(&verb, d)));
+        }
+        if let Some(verb) = node.field("work_at").and_then(|_| kinds.first()).and_then(|k| work_of(k)) {
+            let to = node.all("work_at").map(|n| self.subject(n)).collect();
+            tasks.push(AskedTask { verb: verb.to_owned(), to, ..AskedTask::default() });
+        }
         let verb = tasks.first().map(|t| t.verb.clone());
         let mut kind = kinds.into_iter().next().unwrap_or_else(|| "any".to_owned());
         if kind == "any" {
@@ -446,13 +594,16 @@ impl Maker<'_> {
         let bare = node.all("size").find(|s| s.field("which").is_none()).and_then(|s| measure(s, "length"));
         let round = side("diameter").or(side("radius").map(|r| 2.0 * r));
         let sides = sides(node);
+        // "a robot vacuums the hall": a verb, no plural
+        let several = || several(node, &["robot"]).filter(|_| node.field("work_at").is_none());
+        let asked = count(node).or_else(several).unwrap_or_default();
         let keep_out =
             node.all("keep_out").flat_map(|k| k.all("item").map(|n| self.subject(n)).collect::<Vec<_>>()).collect();
         self.say(
             node,
             Fact::Robots(RobotsAsk {
                 kind,
-                count: count(node).or_else(|| several(node, &["robot"])).unwrap_or_default(),
+                count: asked,
                 width_m: side("width").or(round).or(sides.map(|s| s[0])).or(bare),
                 length_m: side("length").or(round).or(sides.map(|s| s[1])),
                 height_m: side("height"),
@@ -460,9 +611,10 @@ impl Maker<'_> {
                 keep_out,
             }),
         );
-        let ends = node
-            .all("does")
-            .flat_map(|d| d.all("from").chain(d.all("to")).chain(d.all("at")).cloned().collect::<Vec<_>>());
+        let works = node.all("does").chain(node.all("more"));
+        let ends = works
+            .flat_map(|d| d.all("from").chain(d.all("to")).chain(d.all("at")).cloned().collect::<Vec<_>>())
+            .chain(node.all("work_at").cloned());
         let kept = node.all("keep_out").flat_map(|k| k.all("item").cloned().collect::<Vec<_>>());
         for end in ends.chain(kept).collect::<Vec<_>>() {
             self.mention(&end);
@@ -470,11 +622,15 @@ impl Maker<'_> {
     }
 
     fn task(&self, node: &Node) -> Option<AskedTask> {
-        let verb = node.field("verb")?.values("task").next()?.to_owned();
+        let verb = node.field("verb")?.values("task").next()?;
+        Some(self.task_of(verb, node))
+    }
+
+    fn task_of(&self, verb: &str, node: &Node) -> AskedTask {
         let what: Vec<Range<usize>> = node.all("what").map(|w| w.tokens.clone()).collect();
         let what = what.into_iter().reduce(|a, b| a.start..b.end).map(|t| self.reading.written(t).to_owned());
         let to = node.all("to").chain(node.all("at")).map(|n| self.subject(n)).collect();
-        Some(AskedTask { verb, what, from: node.field("from").map(|n| self.subject(n)), to })
+        AskedTask { verb: verb.to_owned(), what, from: node.field("from").map(|n| self.subject(n)), to }
     }
 
     /// States a room or an object that is only spoken of.
@@ -541,7 +697,7 @@ impl Maker<'_> {
                 (room, object) => Fact::Forbidden(ForbiddenAsk { room, object, within: within.clone() }),
             };
             let start = if item.tokens.start == words.start { node.tokens.start.min(words.start) } else { words.start };
-            self.facts.push(Stated { tokens: start..words.end, also: None, fact, mention: false, own: false });
+            self.facts.push(Stated { tokens: start..words.end, ..Stated::new(item, fact) });
         }
     }
 
@@ -564,6 +720,8 @@ impl Maker<'_> {
     fn total(&mut self, node: &Node) {
         let rooms = count(node).map(|c| c.n);
         self.say(node, Fact::Only(OnlyAsk { rooms, closed: false }));
+        let noun = node.field("noun").map_or("", |n| self.reading.written(n.tokens.clone()));
+        self.alike(node, &Subject::unknown(noun));
     }
 
     fn shorthand(&mut self, node: &Node) {
@@ -632,6 +790,13 @@ impl Maker<'_> {
     }
 }
 
+/// Returns what places are counted.
+fn places_of(held: &Node) -> Option<PlaceKind> {
+    held.values("capacity")
+        .chain(held.field("what").into_iter().flat_map(|w| w.values("capacity")))
+        .find_map(place_kind)
+}
+
 /// Returns the number that a node has, as it binds.
 fn count(node: &Node) -> Option<AskedCount> {
     let count = node.field("count")?;
@@ -666,6 +831,10 @@ fn several(node: &Node, fields: &[&str]) -> Option<AskedCount> {
 fn number(count: &Node) -> Option<AskedCount> {
     if count.is("quantity", Some("several")) || count.field("several").is_some() {
         return Some(AskedCount::at_least(2));
+    }
+    // "4 Stellplätze für Löschfahrzeuge": the number of the places is that of the vehicles
+    if let Some(inner) = count.field("count") {
+        return number(inner);
     }
     let n = count.number.or_else(|| count.field("n").and_then(|n| n.number));
     let n = n.or_else(|| count.values("quantity").find_map(|v| v.parse().ok()))?;
@@ -743,6 +912,10 @@ fn kind_of_work(verb: &str) -> &str {
     WORK.iter().find(|w| w.0 == verb).map_or(verb, |w| w.1)
 }
 
+fn work_of(kind: &str) -> Option<&'static str> {
+    WORK.iter().find(|w| w.1 == kind).map(|w| w.0)
+}
+
 fn place_kind(value: &str) -> Option<PlaceKind> {
     from_name(match value {
         "seat" => "seats",
@@ -785,7 +958,11 @@ pub(crate) fn shown(fact: &Fact) -> String {
         Fact::Capacity(c) => {
             let groups = c.groups.map_or(String::new(), |g| format!(" in {g} groups"));
             let room = shown_within(c.room.as_ref(), c.each_room);
-            format!("capacity {} {}{room}{groups}", shown_count(&c.count), named(&c.of))
+            let room = c
+                .of_rooms
+                .map_or(room.clone(), |n| room.replace(" in ", &format!(" in {n} of ")).replace("of each ", "of "));
+            let among = if c.among { "of " } else { "" };
+            format!("capacity {} {among}{}{room}{groups}", shown_count(&c.count), named(&c.of))
         }
         Fact::Relation(r) => {
             format!("relation {} {} {}", shown_subject(&r.a), named(&r.relation), shown_subject(&r.b))
@@ -815,7 +992,8 @@ pub(crate) fn shown(fact: &Fact) -> String {
 }
 
 fn shown_rooms(r: &RoomsAsk) -> String {
-    let mut line = format!("rooms {} {}", shown_count(&r.count), shown_subject(&r.room));
+    let among = if r.among { "of " } else { "" };
+    let mut line = format!("rooms {} {among}{}", shown_count(&r.count), shown_subject(&r.room));
     r.area_m2.iter().for_each(|a| line += &format!(" {a} m2"));
     r.sides_m.iter().for_each(|s| line += &format!(" {} x {} m", s[0], s[1]));
     r.level.iter().for_each(|l| line += &format!(" level {l}"));

@@ -15,6 +15,7 @@ use crate::facts::{Maker, Stated, shown};
 use crate::grammar::Grammar;
 use crate::node::Node;
 use crate::parse::{Applied, parse};
+use crate::storeys;
 use crate::subjects::Known;
 use crate::vocabulary::lexicon;
 
@@ -79,7 +80,8 @@ impl PromptReader {
         nodes.iter().for_each(|n| {
             maker.add(n);
         });
-        let facts = settled(maker.facts);
+        let facts = storeys::settled(maker.facts, building.first.as_ref());
+        let facts = settled(facts);
         let brief = Brief {
             languages: reading.languages().iter().map(|l| (*l).to_owned()).collect(),
             building: building.first,
@@ -183,7 +185,7 @@ impl Elsewhere {
         let asked = facts.iter().filter(|f| !f.mention).filter_map(|f| subject_of(&f.fact));
         let with_each = facts.iter().filter_map(|f| rooms_of(f)?.each.as_ref());
         let numbered = facts.iter().filter_map(|f| Some((rooms_of(f)?, &f.tokens)));
-        let numbered = numbered.filter(|(r, _)| is_counted(r) && r.count.n > 1);
+        let numbered = numbered.filter(|(r, _)| is_counted(r) && r.count.n > 1 && !r.among);
         Self {
             asked: asked.chain(with_each).cloned().collect(),
             numbered: numbered.map(|(r, tokens)| (r.room.clone(), tokens.clone())).collect(),
@@ -194,7 +196,7 @@ impl Elsewhere {
     fn has(&self, stated: &Stated, kept: &[Stated]) -> bool {
         let Some(subject) = subject_of(&stated.fact) else { return false };
         // "3 bedrooms ..., master bedroom with a balcony": one of them
-        let open = rooms_of(stated).is_some_and(|r| !is_counted(r)) && !stated.own;
+        let open = rooms_of(stated).is_some_and(|r| !is_counted(r) && !r.among) && !stated.own;
         let one_of = || self.numbered.iter().any(|(room, at)| is_same(room, subject) && *at != stated.tokens);
         let kind = std::mem::discriminant(&stated.fact);
         let again = |k: &Stated| {
@@ -255,8 +257,33 @@ fn finished(mut brief: Brief, facts: Vec<Stated>, reading: &Reading) -> Brief {
             _ => left.push(chunk.tokens.clone()),
         }
     }
-    brief.not_understood = left.into_iter().filter_map(|tokens| stretch(reading, tokens)).collect::<Vec<PromptWords>>();
+    let left = left.into_iter().map(|tokens| with_noun(tokens, reading));
+    brief.not_understood = left.filter_map(|tokens| stretch(reading, tokens)).collect::<Vec<PromptWords>>();
     brief
+}
+
+/// Returns words that were not understood with the noun beside them where they are a number alone: "phone booths (4", so that one
+/// sees what was lost.
+fn with_noun(tokens: Range<usize>, reading: &Reading) -> Range<usize> {
+    let chunks = reading.chunks();
+    let Some(at) = chunks.iter().position(|c| c.tokens.contains(&tokens.start)) else { return tokens };
+    if chunks[at].number.is_none() || tokens.end > chunks[at].tokens.end {
+        return tokens;
+    }
+    let is_noun = |c: &d3dgen_language::Chunk| {
+        let mark = reading.tokens()[c.tokens.start].kind == TokenKind::Mark;
+        !mark && c.number.is_none() && !c.has("particle") && !c.has("classifier")
+    };
+    let ends = |c: &d3dgen_language::Chunk| [",", ";", "."].contains(&reading.written(c.tokens.clone()));
+    let near = |c: &&d3dgen_language::Chunk| !ends(c);
+    let before = chunks[..at].iter().rev().take_while(near).find(|c| is_noun(c));
+    let after = chunks[at + 1..].iter().take_while(near).find(|c| is_noun(c));
+    match (before, after) {
+        (_, Some(noun)) if noun.tokens.start == tokens.end => tokens.start..noun.tokens.end,
+        (Some(noun), _) => noun.tokens.start..tokens.end,
+        (None, Some(noun)) => tokens.start..noun.tokens.end,
+        (None, None) => tokens,
+    }
 }
 
 #[cfg(test)]

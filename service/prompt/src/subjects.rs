@@ -11,17 +11,22 @@ use serde::Deserialize;
 
 use crate::node::Node;
 
+/// Id of the way into the building, as words have it.
+const ENTRANCE: &str = "entrance";
+
 /// What prompts mean beside what words say, from `facts.toml`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct FactsData {
+pub(crate) struct FactsData {
     /// What half a room of a type is.
     halves: BTreeMap<String, Vec<String>>,
     /// Domain whose rooms those of a building are that no domain knows.
     stand_in: String,
+    /// Kinds of homes that lie within one storey of a house.
+    pub within_a_storey: Vec<String>,
 }
 
-fn facts_data() -> &'static FactsData {
+pub(crate) fn facts_data() -> &'static FactsData {
     static DATA: LazyLock<FactsData> =
         LazyLock::new(|| toml::from_str(include_str!("facts.toml")).expect("a test reads facts.toml"));
     &DATA
@@ -99,11 +104,30 @@ impl<'d> Known<'d> {
         Subject { id, name }
     }
 
+    /// Returns the object that places are: desks, beds.
+    fn places(&self, node: &Node, reading: &Reading) -> Subject {
+        let id =
+            node.field("what").into_iter().flat_map(|w| w.values("capacity")).find(|id| self.objects.contains(*id));
+        Subject { id: id.map(str::to_owned), name: reading.written(node.tokens.clone()).to_owned() }
+    }
+
+    /// Takes an object for so many people: the one of its kind that is made for them, else it is said of it.
+    pub fn size_for(&self, object: &mut Subject, people: u32, attributes: &mut Vec<String>) {
+        let family = object.id.as_deref().map(|id| id.trim_end_matches(|c: char| c.is_ascii_digit()));
+        let sized = family.map(|f| format!("{}_{people}", f.trim_end_matches('_')));
+        match sized.filter(|id| self.objects.contains(id)) {
+            Some(id) => object.id = Some(id),
+            None => attributes.push(format!("for_{people}")),
+        }
+    }
+
     /// Returns the room or object of a node, whichever it is about.
     pub fn any(&self, node: &Node, reading: &Reading) -> Subject {
         match node.made() {
             Some("objects") => self.subject(node, "object", reading),
             Some("rooms") => self.subject(node, "room", reading),
+            Some("capacity") => self.places(node, reading),
+            _ if node.is("thing", Some(ENTRANCE)) => Subject::known(ENTRANCE, reading.written(node.tokens.clone())),
             _ => Subject::unknown(reading.written(node.tokens.clone())),
         }
     }

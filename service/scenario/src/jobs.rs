@@ -5,13 +5,14 @@ use std::sync::LazyLock;
 
 use d3dgen_model::Point;
 use d3dgen_model::brief::{Ask, AskedTask, Brief, Fact, RobotsAsk, Subject};
-use d3dgen_model::domain::Goods;
+use d3dgen_model::domain::{Domain, Goods};
 use d3dgen_model::geometry::to_mm;
+use d3dgen_model::offer;
 use d3dgen_model::robot_kind::{brings, charge_s, cleans};
 use d3dgen_model::scenario::{Poi, RobotJob, RobotJobKind, RobotTask, RoiKind, Scenario};
 use serde::Deserialize;
 
-use super::people::PeopleBuilding;
+use super::people::{PeopleBuilding, PeopleRoom};
 
 /// Corners of a way over a floor at most, over all rooms: a scenario is read by people too.
 const MOST_CORNERS: usize = 6000;
@@ -103,12 +104,26 @@ fn robots_of(ask: &Ask) -> Option<(&Ask, &RobotsAsk)> {
     }
 }
 
-/// Returns the points that a robot visits in the rooms that a brief names.
+/// Returns the points that a robot visits at a place that a brief names: in rooms of that type or name, in those that have such
+/// objects, at the entrance.
 fn points_in(scenario: &Scenario, building: &PeopleBuilding, task: &RobotTask, subject: &Subject) -> Vec<String> {
-    let type_of = |room: &str| building.rooms.iter().find(|r| r.plan.room_id == room).map(|r| r.kind.id.as_str());
+    let entrance = subject.id.as_deref() == Some(Poi::ENTRANCE);
+    let there = |p: &Poi| {
+        let room = building.rooms.iter().find(|r| r.plan.room_id == p.room_id);
+        entrance && p.kind == Poi::ENTRANCE || room.is_some_and(|r| is_meant(building.domain, r, subject))
+    };
     let poi = |id: &&String| scenario.pois.iter().find(|p| &p.poi_id == *id);
-    let there = |p: &Poi| subject.id.is_some() && type_of(&p.room_id) == subject.id.as_deref();
     task.goals.iter().filter(|id| poi(id).is_some_and(there)).cloned().collect()
+}
+
+/// Returns true for a room that a name of the brief means.
+fn is_meant(domain: &Domain, room: &PeopleRoom, subject: &Subject) -> bool {
+    let kind = room.kind;
+    let Some(id) = subject.id.as_deref() else {
+        return room.plan.name.to_lowercase().contains(&subject.name.to_lowercase());
+    };
+    let object = domain.object(id).filter(|_| domain.room_type(id).is_none());
+    kind.id == id || object.is_some_and(|o| offer::has_shape(domain, kind, &[o.shape]))
 }
 
 fn asked_job(
@@ -122,7 +137,8 @@ fn asked_job(
     let work = work(|w| w.verbs.contains(&verb)).unwrap_or_else(|| usual(&task.robot.kind));
     let from = asked.from.as_ref().and_then(|s| points_in(scenario, building, task, s).into_iter().next());
     let mut to: Vec<String> = asked.to.iter().flat_map(|s| points_in(scenario, building, task, s)).collect();
-    if to.is_empty() {
+    // where no place is named its work is everywhere; a place that is named and not there is none elsewhere
+    if asked.to.is_empty() {
         to = task.goals.iter().filter(|id| Some(*id) != from.as_ref()).cloned().collect();
     }
     let job = job(scenario, building, task, work, from, to)?;

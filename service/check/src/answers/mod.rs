@@ -21,6 +21,8 @@ use self::subjects::Found;
 
 /// Share by which a floor area or side that was asked for may be missed.
 const MEASURE_MISS: f64 = 0.05;
+/// Attribute of rooms that people in wheelchairs use.
+const ACCESSIBLE: &str = "accessible";
 /// Letters of a word from which a conflict that has it is taken to speak of the wish that has it too.
 const TELLING_LETTERS: usize = 4;
 
@@ -139,9 +141,7 @@ impl Asked<'_> {
             Fact::Accessible(access) => self.accessible(access),
             Fact::Forbidden(forbidden) => self.forbidden(forbidden),
             Fact::Only(only) => self.only(only),
-            Fact::Site(_) => {
-                Finding::of(Fate::LeftOut, "how a building stands among others changes no plan yet".into())
-            }
+            Fact::Site(site) => self.site(site),
             Fact::Other(other) => Finding::of(Fate::LeftOut, format!("nothing here builds `{}`", other.wish)),
         }
     }
@@ -157,6 +157,9 @@ impl Asked<'_> {
     }
 
     fn rooms(&self, asked: &RoomsAsk) -> Finding {
+        if asked.among {
+            return self.some_rooms(asked);
+        }
         let found = self.rooms_called(&asked.room);
         let there = self.meant(asked, &found.rooms);
         let ids = || there.iter().map(|r| r.id.clone()).collect::<Vec<_>>();
@@ -199,7 +202,44 @@ impl Asked<'_> {
         if kept(&all) {
             return all;
         }
+        // "5 inbound docks ... 3 outbound docks" are eight
+        let (before, after) = self.asked_beside(asked);
+        if before + after > 0 && all.len() as u32 == before + asked.count.n + after {
+            return all.into_iter().skip(before as usize).take(asked.count.n as usize).collect();
+        }
         [narrower, exact].into_iter().find(kept).unwrap_or(all)
+    }
+
+    /// Returns how many of the same rooms on the same storey other facts ask for, before this one and after it.
+    fn asked_beside(&self, asked: &RoomsAsk) -> (u32, u32) {
+        let rooms =
+            self.brief.asks.iter().filter_map(|a| if let Fact::Rooms(rooms) = &a.fact { Some(rooms) } else { None });
+        let same =
+            |r: &&RoomsAsk| r.room.id.is_some() && r.room.id == asked.room.id && r.level == asked.level && !r.among;
+        let all: Vec<&RoomsAsk> = rooms.filter(same).collect();
+        let at = all.iter().position(|r| std::ptr::eq(*r, asked)).unwrap_or(all.len());
+        let sum = |rooms: &[&RoomsAsk]| rooms.iter().map(|r| r.count.n).sum();
+        (sum(&all[..at]), sum(all.get(at + 1..).unwrap_or_default()))
+    }
+
+    /// Answers for some of the rooms that another fact asks for: so many of them are to be as it says.
+    fn some_rooms(&self, asked: &RoomsAsk) -> Finding {
+        let called = self.rooms_called(&asked.room).rooms;
+        let all: Vec<&GraphRoom> = self.world.scene_graph.rooms.iter().filter(|r| r.requested).collect();
+        let among = if called.is_empty() { all } else { called };
+        let is_so = |r: &&&GraphRoom| asked.attributes.iter().all(|a| self.has_itself(a, r));
+        let so: Vec<String> = among.iter().filter(is_so).map(|r| r.id.clone()).collect();
+        let words: Vec<String> = asked.attributes.iter().map(|a| a.replace('_', " ")).collect();
+        let what = format!("{} that are {}", asked.room.label(), words.join(" and "));
+        Finding::counted(asked.count, so, &what)
+    }
+
+    /// Returns whether one room is as an attribute says by itself: what holds for the whole building makes no difference among its
+    /// rooms.
+    fn has_itself(&self, attribute: &str, room: &GraphRoom) -> bool {
+        let typed = room.room_type.split('_').any(|part| part == attribute);
+        let whole = attribute == ACCESSIBLE && !self.world.scene_graph.accessible;
+        typed || !whole && self.attribute(attribute, &[room]).fate == Fate::Honored
     }
 
     /// Returns the types of rooms that the brief speaks of beside one.
@@ -240,7 +280,7 @@ impl Asked<'_> {
         match attribute {
             "with_window" => all(&has_window),
             "windowless" => all(&|r| !has_window(r)),
-            "accessible" => all(&|_| self.world.scene_graph.accessible),
+            ACCESSIBLE => all(&|_| self.world.scene_graph.accessible),
             "open" => all(&|r| {
                 plan.doors_of(&r.id).any(|d| d.kind == DoorKind::Open)
                     || self.domain.room_type_or_generic(&r.room_type).open_front

@@ -39,15 +39,16 @@ impl<'a> Asked<'a> {
         if rooms.is_empty() {
             return Finding::of(Fate::LeftOut, format!("there is no {}", room.label()));
         }
-        if !asked.each_room {
+        if !asked.each_room && asked.of_rooms.is_none() {
             return self.places(asked, |id| rooms.iter().any(|r| r.id == id));
         }
         let holds = |r: &&&GraphRoom| {
             self.readings(asked.of, |id| id == r.id).iter().flatten().any(|held| asked.count.allows(held.places))
         };
-        let n = rooms.iter().filter(holds).count() as u32;
+        let so: Vec<String> = rooms.iter().filter(holds).map(|r| r.id.clone()).collect();
         let what = format!("{} with {} {} each", room.label(), asked.count, label(asked.of));
-        Finding::number(AskedCount::at_least(rooms.len() as u32), n, &what)
+        let wanted = AskedCount::at_least(asked.of_rooms.unwrap_or(rooms.len() as u32));
+        Finding { ids: so.clone(), ..Finding::number(wanted, so.len() as u32, &what) }
     }
 
     /// A number is kept when one of the ways to count such places gives it; else the first of them is told.
@@ -76,7 +77,8 @@ impl<'a> Asked<'a> {
             PlaceKind::Seats => {
                 let desks = of_rooms(desks, works_in);
                 let seats = of_rooms(guest_seats, |domain, kind| !works_in(domain, kind));
-                vec![desks, seats, of_rooms(guest_seats, is_sat_in), all(seats_of)]
+                let treated = self.treated(|room| within(&room.id));
+                vec![desks, seats, of_rooms(guest_seats, is_sat_in), treated, all(seats_of)]
             }
             PlaceKind::Desks => vec![all(desks)],
             // a couch that somebody is examined on is no bed of a ward

@@ -8,6 +8,9 @@ use d3dgen_model::scene_graph::GraphRoom;
 
 use super::Asked;
 
+/// Id of the way into the building, which is no room: the rooms that one enters it through.
+const ENTRANCE: &str = "entrance";
+
 /// What goes by a name.
 #[derive(Default)]
 pub(super) struct Found<'a> {
@@ -48,6 +51,9 @@ impl<'a> Asked<'a> {
         let name = as_id(&subject.name);
         let id = subject.id.as_deref().unwrap_or(&name);
         let is_so = |r: &&GraphRoom| {
+            if id == ENTRANCE {
+                return r.entrance;
+            }
             let worded =
                 || self.domain.room_type_or_lent(&r.room_type).is_some_and(|t| has_word(&t.keywords, &subject.name));
             is_kind_of(&r.room_type, id) || worded() || !name.is_empty() && is_kind_of(&as_id(&r.name), &name)

@@ -1,8 +1,10 @@
 //! Facts about the building as a whole: storeys, floor, robots, manner, what is ruled out.
 
 use d3dgen_model::brief::{
-    AccessAsk, AreaAsk, AskedCount, Bound, ForbiddenAsk, OnlyAsk, RobotsAsk, StoreysAsk, StyleAsk, Subject,
+    AccessAsk, AreaAsk, AskedCount, Bound, ForbiddenAsk, OnlyAsk, RobotsAsk, SiteAsk, SiteKind, StoreysAsk, StyleAsk,
+    Subject,
 };
+use d3dgen_model::domain::GENERIC_ROOM_TYPE;
 use d3dgen_model::report::Fate;
 use d3dgen_model::scene_graph::{GraphRoom, Robot};
 use d3dgen_model::style::{Style, StyleWord};
@@ -61,7 +63,12 @@ impl Asked<'_> {
 
     /// Returns true for rooms that robots go to: by name, or because they go wherever their kind works.
     fn is_visited(&self, subject: &Subject, robots: &[&Robot]) -> bool {
-        let rooms = self.rooms_called(subject).rooms;
+        let mut rooms = self.rooms_called(subject).rooms;
+        if rooms.is_empty() {
+            let things = self.objects_called(subject).placements;
+            let holds = |r: &&GraphRoom| things.iter().any(|p| p.room_id == r.id);
+            rooms = self.world.scene_graph.rooms.iter().filter(holds).collect();
+        }
         let goes = |room: &GraphRoom| {
             robots.iter().any(|r| {
                 let everywhere = r.stops.is_empty() && r.room_types.is_empty();
@@ -73,6 +80,14 @@ impl Asked<'_> {
 
     fn is_kept_out(&self, subject: &Subject) -> bool {
         self.rooms_called(subject).rooms.iter().all(|r| self.world.scene_graph.keeps_robots_out(&r.id))
+    }
+
+    /// A unit within a house is one where it has one storey; how a building stands among others changes no plan beside that.
+    pub(super) fn site(&self, asked: &SiteAsk) -> Finding {
+        let level = self.world.scene_graph.rooms.first().map(|r| r.level);
+        let flat = self.world.scene_graph.rooms.iter().all(|r| Some(r.level) == level);
+        let reason = || "how a building stands among others changes no plan yet".into();
+        Finding::when(asked.kind == SiteKind::Inside && flat, Vec::new(), reason)
     }
 
     pub(super) fn style(&self, asked: &StyleAsk) -> Finding {
@@ -116,10 +131,18 @@ impl Asked<'_> {
         Finding::when(ids.is_empty(), ids, || reason)
     }
 
+    /// Returns how many rooms there are as people count those of such a building: those to sleep in of a hotel.
+    fn rooms_counted(&self, rooms: &[&GraphRoom]) -> u32 {
+        let kind = self.world.scene_graph.building_type.as_deref();
+        let kind = self.domain.building_types.iter().find(|b| Some(b.id.as_str()) == kind);
+        let counted = kind.and_then(|b| self.domain.program(&b.program)).and_then(|p| p.means.get(GENERIC_ROOM_TYPE));
+        rooms.iter().filter(|r| counted.is_none_or(|id| r.room_type.starts_with(id.as_str()))).count() as u32
+    }
+
     pub(super) fn only(&self, asked: &OnlyAsk) -> Finding {
         let rooms: Vec<&GraphRoom> = self.world.scene_graph.rooms.iter().filter(|r| !r.circulation).collect();
         let counted = match asked.rooms {
-            Some(n) => Finding::number(AskedCount::exactly(n), rooms.len() as u32, "rooms"),
+            Some(n) => Finding::number(AskedCount::exactly(n), self.rooms_counted(&rooms), "rooms"),
             None => Finding::honored(Vec::new()),
         };
         let added: Vec<String> = rooms.iter().filter(|r| asked.closed && !r.requested).map(|r| r.id.clone()).collect();

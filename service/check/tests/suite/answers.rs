@@ -59,6 +59,7 @@ fn facts_are_honored_where_they_hold_and_told_where_they_do_not() {
             room: None,
             each_room: false,
             groups: None,
+            ..CapacityAsk::default()
         })
     };
     let cases = [
@@ -142,6 +143,7 @@ fn work_places_are_desks_and_beds_are_where_people_stay() {
             room: Some(room(room_id)),
             each_room: false,
             groups: None,
+            ..CapacityAsk::default()
         };
         Fact::Capacity(capacity)
     };

@@ -334,7 +334,7 @@ fn reads_counts_and_groups() {
     assert_eq!(right, all);
 }
 
-/// In languages that only the brief is read in.
+/// In languages that only the brief is read in, and where it keeps more of a prompt than the words that were read.
 #[test]
 fn reads_prompts_of_which_the_rooms_come_from_the_brief() {
     let (right, all) = score(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prompts/briefed.jsonl"));

@@ -6,12 +6,15 @@
 
 use std::ops::Range;
 
-use d3dgen_model::brief::{Ask, Bound, Brief, Fact, RoomsAsk};
+use d3dgen_model::brief::{Ask, Bound, Brief, CapacityAsk, Fact, PlaceKind, RoomsAsk, SiteKind};
 use d3dgen_model::domain::GENERIC_ROOM_TYPE;
+use d3dgen_model::offer;
 use d3dgen_model::scene_graph::Note;
 use d3dgen_plugins::Registry;
 
+use super::machines;
 use super::wishes::Facts;
+use crate::levels::storeys::Storeys;
 use crate::people::seats::Called;
 use crate::reading::{Reading, Understood};
 use crate::request::MAX_AREA_M2;
@@ -24,8 +27,12 @@ use crate::wished::wishes::{Pair, Wish};
 pub(crate) fn restore(reading: &mut Reading, brief: &Brief, registry: &Registry) {
     let facts = Facts::of(brief, reading.domain, registry);
     restore_single(reading, brief, &facts);
+    restore_site(reading, brief);
+    restore_heads(reading, brief);
     if !reading.single {
         restore_rooms(reading, brief, registry);
+        restore_each(reading, brief, &facts);
+        restore_seats(reading, brief, &facts);
         restore_levels(reading, &facts);
         let wished = |id: &String| reading.wishes.wishes.iter().any(|w| &w.room_type == id);
         let forbidden =
@@ -37,6 +44,7 @@ pub(crate) fn restore(reading: &mut Reading, brief: &Brief, registry: &Registry)
             facts.seats.iter().filter(|h| wished(&h.room_type) && unseated(&h.room_type)).cloned().collect();
         reading.seats.extend(seats);
     }
+    reading.errands = machines::restored(&reading.robots, &reading.errands, brief, &facts);
     for thing in &facts.things {
         let asked = facts.things.iter().filter(|t| t.object == thing.object).count();
         let have = reading.objects.iter().filter(|t| t.object == thing.object);
@@ -48,6 +56,40 @@ pub(crate) fn restore(reading: &mut Reading, brief: &Brief, registry: &Registry)
     }
     let usable = |a: &f64| (5.0..=MAX_AREA_M2).contains(a);
     reading.area_m2 = reading.area_m2.or(facts.area_m2.filter(usable));
+}
+
+/// Takes the storey on which a flat lies in its house for no storey of the flat.
+fn restore_site(reading: &mut Reading, brief: &Brief) {
+    let inside = |a: &Ask| matches!(&a.fact, Fact::Site(s) if s.kind == SiteKind::Inside);
+    let storeys = |a: &Ask| match &a.fact {
+        Fact::Storeys(storeys) => storeys.count.n > 1 || storeys.basement,
+        Fact::Rooms(rooms) => rooms.level.is_some(),
+        _ => false,
+    };
+    if brief.asks.iter().any(inside) && !brief.asks.iter().any(storeys) {
+        reading.storeys = Storeys { levels: vec![0], ..Storeys::default() };
+    }
+}
+
+/// Takes a number that the brief says of a room without desks for no number of people of the building.
+fn restore_heads(reading: &mut Reading, brief: &Brief) {
+    let domain = reading.domain;
+    let visited = |c: &CapacityAsk| {
+        let kind = c.room.as_ref().and_then(|room| domain.room_type(room.id.as_deref()?));
+        kind.is_some_and(|kind| !offer::works_in(domain, kind) && offer::desks(domain, kind).is_none())
+    };
+    let of_room =
+        |n: u32| brief.asks.iter().any(|a| matches!(&a.fact, Fact::Capacity(c) if c.count.n == n && visited(c)));
+    let of_building = |n: u32| {
+        brief.asks.iter().any(|a| match &a.fact {
+            Fact::Capacity(c) => c.room.is_none() && c.count.n == n,
+            Fact::People(people) => people.count.n == n,
+            _ => false,
+        })
+    };
+    for heads in [&mut reading.occupancy.staff, &mut reading.occupancy.visitors] {
+        *heads = heads.filter(|n| !of_room(*n) || of_building(*n));
+    }
 }
 
 /// Takes a prompt for one room that names one and no building, whatever more it says of that room, with the sides that it gives.
@@ -141,6 +183,39 @@ fn restore_pairs(reading: &mut Reading, facts: &Facts, added: &[Wish]) {
     let pairs = facts.wishes.pairs.iter().filter(|p| (new(&p.a) || new(&p.b)) && there(&p.a) && there(&p.b));
     let pairs: Vec<Pair> = pairs.cloned().collect();
     reading.wishes.pairs.extend(pairs);
+}
+
+/// Takes seats of one room for no number of rooms: "교육실 20명" is one room for 20.
+fn restore_seats(reading: &mut Reading, brief: &Brief, facts: &Facts) {
+    let told = |n: u32| brief.asks.iter().filter_map(rooms_of).any(|r| r.count.n == n);
+    for ask in &brief.asks {
+        let Fact::Capacity(CapacityAsk { of: PlaceKind::Seats, count, room: Some(room), of_rooms: None, .. }) =
+            &ask.fact
+        else {
+            continue;
+        };
+        let id = facts.type_of(room);
+        let seats = |w: &&mut Wish| w.room_type == id && w.count == count.n && count.n > 1 && !told(count.n);
+        if let Some(wish) = reading.wishes.wishes.iter_mut().find(seats) {
+            wish.count = 1;
+        }
+    }
+}
+
+/// Gives each of several rooms the one that the brief says it comes with, where fewer were read: an induction room for each of
+/// three operating rooms.
+fn restore_each(reading: &mut Reading, brief: &Brief, facts: &Facts) {
+    let hosts = brief.asks.iter().filter_map(rooms_of).filter(|r| r.count.bound == Bound::Exactly);
+    for (host, guest) in hosts.filter_map(|host| Some((host, host.each.as_ref()?))) {
+        let (host_type, guest_type) = (facts.type_of(&host.room), facts.type_of(guest));
+        let lone = |w: &&mut Wish| w.room_type == guest_type && w.count == 1;
+        let Some(wish) = reading.wishes.wishes.iter_mut().find(lone) else { continue };
+        (wish.count, wish.exact) = (host.count.n, true);
+        let told = |p: &&Pair| p.a == guest_type && p.b == host_type;
+        if !reading.wishes.pairs.iter().any(|p| told(&p)) {
+            reading.wishes.pairs.extend(facts.wishes.pairs.iter().find(told).cloned());
+        }
+    }
 }
 
 /// Puts rooms on the storeys that the brief says, where nothing else was read of that.

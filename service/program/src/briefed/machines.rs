@@ -10,6 +10,8 @@ use super::{Notes, Request, Wishes};
 use crate::machines::{robot_rules, robots};
 use crate::wished::wishes::CHARGING;
 
+/// Id of the way into the building, where robots fetch and bring things.
+const ENTRANCE: &str = "entrance";
 /// Kind that stands for those that are not planned.
 const SERVICE: &str = "service";
 
@@ -55,22 +57,43 @@ fn robot(asked: &RobotsAsk, request: &Request, charging: bool, notes: &mut Notes
     })
 }
 
-/// Returns the rooms that the one robot of a brief goes to.
-pub(super) fn errand(brief: &Brief, facts: &Facts) -> robots::Errand {
-    let tasks = || asks(brief).flat_map(|a| &a.tasks);
-    let places = tasks().flat_map(|t| t.from.iter().chain(&t.to)).filter(|s| s.id.is_some());
-    let mut room_types: Vec<String> = Vec::new();
-    for id in places.map(|s| facts.type_of(s)) {
-        if !room_types.contains(&id) {
-            room_types.push(id);
+/// Returns where each robot of a brief goes: to the rooms that its tasks name, or that have the objects which they name.
+pub(super) fn errands(brief: &Brief, facts: &Facts) -> Vec<robots::Errand> {
+    asks(brief).map(|asked| errand(asked, facts)).collect()
+}
+
+fn errand(asked: &RobotsAsk, facts: &Facts) -> robots::Errand {
+    let mut out = robots::Errand::default();
+    for place in asked.tasks.iter().flat_map(|t| t.from.iter().chain(&t.to)) {
+        if place.id.as_deref() == Some(ENTRANCE) {
+            out.entrance = true;
+        }
+        for id in facts.rooms_at(place) {
+            if !out.room_types.contains(&id) {
+                out.room_types.push(id);
+            }
         }
     }
-    // one place is where it works, not a way between two
-    if room_types.len() < 2 || asks(brief).count() != 1 {
-        robots::Errand::default()
-    } else {
-        robots::Errand { room_types, entrance: false }
-    }
+    // what brings things to one place takes them where its kind does
+    let places = out.room_types.len() + usize::from(out.entrance);
+    if robot_kind::brings(&asked.kind) && places < 2 { robots::Errand::default() } else { out }
+}
+
+/// Returns for each robot where the brief sends its kind; robots that it says nothing of go where they went.
+pub(super) fn restored(
+    robots: &[Robot],
+    errands: &[robots::Errand],
+    brief: &Brief,
+    facts: &Facts,
+) -> Vec<robots::Errand> {
+    let told: Vec<(&RobotsAsk, robots::Errand)> = asks(brief).map(|a| (a, errand(a, facts))).collect();
+    let of = |(i, robot): (usize, &Robot)| {
+        let own = errands.get(i).filter(|e| **e != robots::Errand::default()).cloned();
+        let one = robots.len() == 1 && told.len() == 1;
+        let found = || told.iter().find(|(a, _)| one || a.kind == robot.kind).map(|(_, e)| e.clone());
+        own.or_else(found).unwrap_or_default()
+    };
+    robots.iter().enumerate().map(of).collect()
 }
 
 /// Returns the rooms that robots stay out of.

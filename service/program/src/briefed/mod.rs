@@ -101,7 +101,7 @@ pub(crate) fn read<'a>(brief: &Brief, request: &Request, registry: &'a Registry)
     let Draft { heard, site, counted, wishes, notes, .. } = draft;
     let language = heard.language;
     let keep_out = machines::keep_out(brief, &facts);
-    let errand = machines::errand(brief, &facts);
+    let errands = machines::errands(brief, &facts);
     Ok(Reading {
         language,
         domain: site.domain,
@@ -140,7 +140,7 @@ pub(crate) fn read<'a>(brief: &Brief, request: &Request, registry: &'a Registry)
         robot_rules: keep_out,
         two_way: false,
         docked: Vec::new(),
-        errand,
+        errands,
         style,
         assumptions: notes.assumptions,
         conflicts: notes.conflicts,

@@ -53,8 +53,7 @@ fn what_is_ruled_out_is_not_there() {
 
 #[test]
 fn beds_people_and_places_make_rooms() {
-    let beds =
-        CapacityAsk { of: PlaceKind::Beds, count: AskedCount::exactly(12), room: None, each_room: false, groups: None };
+    let beds = CapacityAsk { of: PlaceKind::Beds, count: AskedCount::exactly(12), ..CapacityAsk::default() };
     let ward = graph(Some(building("hospital", Some("ward"))), vec![Fact::Capacity(beds)]);
     assert_eq!(ward.occupancy.beds, Some(12));
     let staff = Fact::People(PeopleAsk { role: "employee".into(), count: AskedCount::exactly(30) });
@@ -159,6 +158,7 @@ fn beds_in_rooms_without_a_number_make_as_many_rooms_as_that_takes() {
             room,
             each_room: false,
             groups: None,
+            ..CapacityAsk::default()
         })
     };
     // "24 beds, mostly double rooms" and "12 beds in double rooms"
@@ -177,6 +177,7 @@ fn each_group_has_the_room_that_the_building_is_for() {
         room: None,
         each_room: false,
         groups: Some(3),
+        ..CapacityAsk::default()
     };
     let found =
         graph(Some(building("school", Some("kindergarten"))), vec![Fact::Capacity(groups), rooms("kitchen", 1)]);

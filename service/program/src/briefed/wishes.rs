@@ -30,6 +30,8 @@ use crate::wished::wishes::{Apart, Pair, PerHost};
 const SIZES: [(&str, f64); 2] = [("large", 1.4), ("small", 0.75)];
 /// For how many rooms are that are said to be so.
 const PEOPLE: [(&str, u32); 2] = [("single", 1), ("double", 2)];
+/// Attribute of rooms that people in wheelchairs use.
+const ACCESSIBLE: &str = "accessible";
 /// Most storeys above the ground, as for prompts.
 const MOST_LEVELS: u32 = 12;
 /// Most objects of one kind that one fact asks for.
@@ -91,6 +93,8 @@ pub(super) struct Facts<'a> {
     pub single: bool,
     /// True when the brief names a building, of which the rooms are a part.
     pub named: bool,
+    /// Places of those counted that are in rooms of their own.
+    elsewhere: u32,
     /// Storeys that are counted, and whether a basement is among them or beside.
     stated: Option<(u32, bool)>,
     /// Rooms on a storey.
@@ -165,6 +169,8 @@ impl<'a> Facts<'a> {
         out.domain = Some(domain);
         out.in_plan_language = brief.languages.first().is_some_and(|l| l == PLAN_LANGUAGE);
         out.sized = sized_rooms(brief);
+        let apart = brief.asks.iter().filter_map(|a| if let Fact::Capacity(c) = &a.fact { Some(c) } else { None });
+        out.elsewhere = apart.filter(|c| c.among).map(|c| c.count.n).sum();
         // how many there are of a room is known before what is said of it
         for ask in &brief.asks {
             if let Fact::Rooms(rooms) = &ask.fact {
@@ -176,6 +182,10 @@ impl<'a> Facts<'a> {
                 Fact::Objects(objects) => out.objects(objects),
                 Fact::Capacity(capacity) => out.capacity(capacity),
                 Fact::Relation(relation) => out.relation(relation),
+                // who sees people has a room for it
+                Fact::People(people) if domain.room_type(&people.role).is_some() => {
+                    out.wish(&people.role, &people.role.replace('_', " "), people.count, is_told(people.count));
+                }
                 Fact::People(people) => {
                     if lives && roles().children.contains(&people.role) {
                         out.children += people.count.n;
@@ -252,6 +262,18 @@ impl<'a> Facts<'a> {
         slug_of(&subject.name).or_else(numbered).unwrap_or_else(|| GENERIC_ROOM_TYPE.to_owned())
     }
 
+    /// Returns the types of rooms that robots are sent to by a name: the room's own, or those that have such objects.
+    pub(super) fn rooms_at(&self, subject: &Subject) -> Vec<String> {
+        let Some(domain) = self.domain else { return Vec::new() };
+        let id = self.type_of(subject);
+        if domain.room_type(&id).is_some() || self.wishes.wishes.iter().any(|w| w.room_type == id) {
+            return vec![id];
+        }
+        let object = subject.id.as_deref().and_then(|id| domain.object(id));
+        let hosts = |shape| domain.room_types.iter().filter(move |k| offer::has_shape(domain, k, &[shape]));
+        object.into_iter().flat_map(|o| hosts(o.shape)).map(|k| k.id.clone()).collect()
+    }
+
     /// Returns the room that the brief is about, where it asks for that one and names no building.
     pub(super) fn only_room(&self) -> Option<&Wish> {
         let [room] = &self.wishes.wishes[..] else { return None };
@@ -313,6 +335,10 @@ impl<'a> Facts<'a> {
     }
 
     fn rooms(&mut self, asked: &RoomsAsk) {
+        if asked.among {
+            self.accessible |= asked.attributes.iter().any(|a| a == ACCESSIBLE);
+            return;
+        }
         let id = self.type_of(&asked.room);
         let area = asked.area_m2.or_else(|| asked.sides_m.map(|s| s[0] * s[1]));
         let size = SIZES.iter().find(|(word, _)| asked.attributes.iter().any(|a| a == word)).map(|s| s.1);
@@ -333,7 +359,7 @@ impl<'a> Facts<'a> {
             match attribute.as_str() {
                 "open" => self.wishes.open.push(id.clone()),
                 "separate" | "closed" => self.wishes.closed.push(id.clone()),
-                "accessible" => self.accessible = true,
+                ACCESSIBLE => self.accessible = true,
                 _ => {}
             }
         }
@@ -392,16 +418,20 @@ impl<'a> Facts<'a> {
             _ => None,
         };
         let told = asked.count.bound != Bound::AtLeast;
+        if let (Some(room), Some(n)) = (&asked.room, asked.of_rooms) {
+            let held = Held { room_type: self.type_of(room), count: n, beds: asked.count.n };
+            return self.hold(asked.of, held);
+        }
         let all = if told { asked.count.n.saturating_mul(asked.groups.unwrap_or(1)) } else { 0 };
         let Some(room) = &asked.room else {
             if let Some(groups) = asked.groups.filter(|_| asked.of == PlaceKind::Seats) {
                 self.house_groups(groups, told.then_some(asked.count.n));
             }
+            if asked.of == PlaceKind::Treatment || asked.of == PlaceKind::Seats && self.is_for_treatment() {
+                return self.treat(asked.count.n.saturating_sub(self.elsewhere));
+            }
             if let Some(what) = whole(asked.of).filter(|_| all > 0) {
                 self.head(what, all);
-            }
-            if asked.of == PlaceKind::Treatment {
-                self.treat(asked.count.n);
             }
             return;
         };
@@ -416,11 +446,15 @@ impl<'a> Facts<'a> {
         }
         let rooms = self.wishes.wishes.iter().find(|w| w.room_type == room_type).map_or(1, |w| w.count);
         let each = if asked.each_room { asked.count.n } else { asked.count.n.div_ceil(rooms.max(1)) };
-        let held = Held { room_type, count: rooms, beds: each };
-        match asked.of {
+        self.hold(asked.of, Held { room_type, count: rooms, beds: each });
+    }
+
+    /// Gives rooms so many places each.
+    fn hold(&mut self, of: PlaceKind, held: Held) {
+        match of {
             PlaceKind::Beds => self.beds.push(held),
             PlaceKind::Desks => {
-                self.head(What::Desks, held.beds.saturating_mul(rooms));
+                self.head(What::Desks, held.beds.saturating_mul(held.count));
                 self.desks.push(held);
             }
             PlaceKind::Seats | PlaceKind::Counters => self.seats.push(held),
@@ -436,6 +470,11 @@ impl<'a> Facts<'a> {
             self.wish(&kind.id, &kind.label, AskedCount::exactly(groups), true);
         }
         self.seats.extend(each.map(|beds| Held { room_type: kind.id.clone(), count: groups, beds }));
+    }
+
+    /// Returns true where the room that the building is for has places to be treated at.
+    fn is_for_treatment(&self) -> bool {
+        self.main_room().zip(self.domain).is_some_and(|(kind, domain)| offer::places(domain, kind).is_some())
     }
 
     /// Gives so many places to be treated at to the room that the building is for.

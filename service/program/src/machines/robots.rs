@@ -523,11 +523,12 @@ pub(crate) fn errand(robots: &Robots, tokens: &[Token], mentions: &[Mention], sp
     if out.room_types.len() + usize::from(out.entrance) < 2 { Errand::default() } else { out }
 }
 
-/// Gives the robot of an errand the rooms it goes to.
-pub(crate) fn send(errand: &Errand, rooms: &[GraphRoom], robots: &mut [Robot]) {
-    let [robot] = robots else { return };
-    let goes = |r: &&GraphRoom| errand.entrance && r.entrance || errand.room_types.contains(&r.room_type);
-    robot.stops = rooms.iter().filter(goes).map(|r| r.id.clone()).collect();
+/// Gives each robot of an errand the rooms it goes to.
+pub(crate) fn send(errands: &[Errand], rooms: &[GraphRoom], robots: &mut [Robot]) {
+    for (robot, errand) in robots.iter_mut().zip(errands) {
+        let goes = |r: &&GraphRoom| errand.entrance && r.entrance || errand.room_types.contains(&r.room_type);
+        robot.stops = rooms.iter().filter(goes).map(|r| r.id.clone()).collect();
+    }
 }
 
 /// A prompt with its tokens.

@@ -279,7 +279,10 @@ fn facing(from: Point, to: Point) -> Pose {
     Pose { x: to_mm(from.x), y: to_mm(from.y), z: 0.0, yaw_rad: (yaw * 1e4).round() / 1e4 }
 }
 
-pub(crate) use ground::Building as PeopleBuilding;
+pub(crate) use ground::{Building as PeopleBuilding, Room as PeopleRoom};
+
+/// Rooms by id, with those that one gets to from each.
+type Neighbors<'a> = BTreeMap<&'a str, BTreeSet<&'a str>>;
 
 #[cfg(test)]
 mod tests {
@@ -332,6 +335,3 @@ mod tests {
         assert_eq!(quiet.per_min, 1.0);
     }
 }
-
-/// Rooms by id, with those that one gets to from each.
-type Neighbors<'a> = BTreeMap<&'a str, BTreeSet<&'a str>>;

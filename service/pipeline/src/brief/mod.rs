@@ -2,7 +2,7 @@
 //!
 //! The rules of `d3dgen-prompt` read every prompt into a brief, which the finished world answers fact by fact. The rooms are made
 //! of the same brief where the older reader of `d3dgen-program` does not know the prompt's language, or where somebody wrote
-//! the brief; else that reader makes them of the words.
+//! the brief; else of the words by that reader, unless the rooms of the brief keep more of what was asked for.
 
 use d3dgen_model::brief::Brief;
 use d3dgen_model::floorplan::Floorplan;
@@ -11,7 +11,15 @@ use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
 use d3dgen_prompt::PromptReader;
 
+mod kept;
+
 use crate::scene_graph::{self, Request, says_nothing};
+
+/// Things that one reading must keep more of a brief than the other in order to be taken instead.
+const MISSED: usize = 2;
+
+/// Code of what is assumed where a building has parts of which one was planned.
+const PART_PLANNED: &str = "part_planned";
 
 /// Codes of what is assumed where a prompt names no building that a domain knows.
 const NO_BUILDING: [&str; 2] = ["default_domain", "domain_from_rooms"];
@@ -39,16 +47,41 @@ pub fn rooms(request: &Request, registry: &Registry) -> Result<(SceneGraph, Opti
     };
     let of_words = brief.languages.first().is_none_or(|l| scene_graph::reads(l));
     let free = request.domain.is_none();
-    let graph = if !of_words || free && says_nothing(&brief) {
-        rooms_of(&brief, request, registry)?
-    } else {
-        let graph = scene_graph::generate_with(&brief, request, registry)?;
-        let unnamed = graph.assumptions.iter().any(|n| NO_BUILDING.contains(&n.code.as_str()));
-        // a kind of building that no domain knows is no home by its rooms
-        let unknown = free && unnamed && brief.building.as_ref().is_some_and(|b| b.domain.is_none());
-        if unknown { rooms_of(&brief, request, registry)? } else { graph }
-    };
+    if !of_words || free && says_nothing(&brief) {
+        return Ok((rooms_of(&brief, request, registry)?, Some(brief)));
+    }
+    let graph = scene_graph::generate_with(&brief, request, registry)?;
+    let unnamed = graph.assumptions.iter().any(|n| NO_BUILDING.contains(&n.code.as_str()));
+    // a kind of building that no domain knows is no home by its rooms
+    let unknown = free && unnamed && brief.building.as_ref().is_some_and(|b| b.domain.is_none());
+    let graph = if unknown { rooms_of(&brief, request, registry)? } else { fuller(&brief, graph, request, registry) };
     Ok((graph, Some(brief)))
+}
+
+/// Returns the rooms that were made of the words, or those of the brief alone where these keep more of what it asks for.
+fn fuller(brief: &Brief, of_words: SceneGraph, request: &Request, registry: &Registry) -> SceneGraph {
+    let missed = kept::missed(brief, &of_words);
+    // what a home has is said in many words of which the brief has no fact
+    let home = scene_graph::is_home(&of_words, registry);
+    if missed < MISSED || !brief.not_understood.is_empty() || home || has_parts(&of_words) {
+        return of_words;
+    }
+    match rooms_of(brief, request, registry) {
+        Ok(graph) if same(&graph, &of_words) && kept::missed(brief, &graph) == 0 => graph,
+        _ => of_words,
+    }
+}
+
+/// Returns true for a graph of departments or units, which no fact of a brief says.
+fn has_parts(graph: &SceneGraph) -> bool {
+    graph.rooms.iter().any(|r| r.unit.is_some()) || graph.assumptions.iter().any(|n| n.code == PART_PLANNED)
+}
+
+/// Returns true for graphs of one kind of building, of which the first says for how many people it is where the other does.
+fn same(a: &SceneGraph, b: &SceneGraph) -> bool {
+    let told = |graph: &SceneGraph| [graph.occupancy.staff.is_some(), graph.occupancy.beds.is_some()];
+    let peopled = told(a).into_iter().zip(told(b)).all(|(own, other)| own || !other);
+    a.domain == b.domain && a.building_type == b.building_type && peopled
 }
 
 /// Makes the rooms of a brief; the flags of the request overrule it.
