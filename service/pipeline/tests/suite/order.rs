@@ -228,7 +228,7 @@ fn one_comes_to_rows_of_desks_through_an_aisle() {
 #[test]
 fn robots_dock_behind_doors_that_open_by_themselves() {
     let mut held = Vec::new();
-    for prompt in ["office with 8 rooms and a cleaning robot", "apartment with 5 rooms and a robot vacuum"] {
+    for prompt in ["office with 8 rooms and a cleaning robot", "clinic with 8 rooms and a cleaning robot"] {
         for world in worlds(prompt, 8) {
             let docks = world.placements.placements.iter().filter(|p| p.object.contains("dock"));
             held.extend(docks.map(|dock| {
