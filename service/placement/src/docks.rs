@@ -51,16 +51,18 @@ pub(crate) fn berths<'p>(p: &'p Placed) -> impl Iterator<Item = Box2> + 'p {
 
 /// Returns the floor before the docks of a unit: as deep as their clearance and as a robot needs, mm.
 pub(crate) fn buffers<'p>(p: &'p Placed, robot: i32) -> impl Iterator<Item = Box2> + 'p {
-    fronts(p).map(move |(q, own, clearance)| {
-        let depth = clearance.max(robot);
-        Box2 { x0: own.x0, x1: own.x1 + depth, y0: own.y0 - BESIDE, y1: own.y1 + BESIDE }.turned(q)
-    })
+    before(p, robot)
 }
 
 /// Returns the floor before the docks of a unit from where a robot begins to drive up to it, mm.
 pub(crate) fn approaches<'p>(p: &'p Placed, robot: i32) -> impl Iterator<Item = Box2> + 'p {
+    before(p, robot + DRIVE_UP)
+}
+
+/// Returns the floor before and beside the docks of a unit: as deep as their clearance, and as is given at least, mm.
+fn before<'p>(p: &'p Placed, least: i32) -> impl Iterator<Item = Box2> + 'p {
     fronts(p).map(move |(q, own, clearance)| {
-        let depth = clearance.max(robot + DRIVE_UP);
+        let depth = clearance.max(least);
         Box2 { x0: own.x0, x1: own.x1 + depth, y0: own.y0 - BESIDE, y1: own.y1 + BESIDE }.turned(q)
     })
 }
