@@ -5,24 +5,12 @@ import { mkdtempSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
-import { drawn, executable, launch, make, middle, opened, saved, Server, sound } from "./support.mjs";
+import { browser, drawn, make, middle, opened, saved, server, Server, skip, sound, withBrowserAndServer } from "./support.mjs";
 
-const skip = executable ? false : "no browser is here";
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-let browser;
-let server;
-
-before(async () => {
-  if (skip) return;
-  browser = await launch();
-  server = await new Server().start();
-});
-after(async () => {
-  await browser?.close();
-  await server?.remove();
-});
+withBrowserAndServer();
 
 const id = (name) => `[data-testid="${name}"]`;
 const open = (page, stage) => page.getByTestId(`stage-${stage}`).click();

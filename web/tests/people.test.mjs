@@ -1,22 +1,10 @@
 /** People and robots: a scenario is moved by the server, played over the plan, and told in figures. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
-import { executable, launch, make, middle, opened, Server, sound } from "./support.mjs";
+import { browser, make, middle, opened, server, skip, sound, withBrowserAndServer } from "./support.mjs";
 
-const skip = executable ? false : "no browser is here";
-let browser;
-let server;
-
-before(async () => {
-  if (skip) return;
-  browser = await launch();
-  server = await new Server().start();
-});
-after(async () => {
-  await browser?.close();
-  await server?.remove();
-});
+withBrowserAndServer();
 
 test("everybody walks over the plan, and encounters, distances and conditions are told", { skip }, async () => {
   const { page, context, faults } = await opened(browser, server.url);

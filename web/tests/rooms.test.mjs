@@ -1,22 +1,10 @@
 /** Rooms: renamed, sized and joined otherwise, and planned anew. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
-import { built, drawn, executable, launch, make, opened, Server, sound } from "./support.mjs";
+import { browser, built, drawn, make, opened, server, skip, sound, withBrowserAndServer } from "./support.mjs";
 
-const skip = executable ? false : "no browser is here";
-let browser;
-let server;
-
-before(async () => {
-  if (skip) return;
-  browser = await launch();
-  server = await new Server().start();
-});
-after(async () => {
-  await browser?.close();
-  await server?.remove();
-});
+withBrowserAndServer();
 
 test("a room is renamed, made larger and joined with another one, and the building is planned so", { skip }, async () => {
   const { page, context, faults } = await opened(browser, server.url);

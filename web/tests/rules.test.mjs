@@ -1,23 +1,11 @@
 /** Rules are changed on the page: shown first, written, listed, taken back; the world is judged by them at once. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
-import { executable, launch, make, opened, Server, sound } from "./support.mjs";
+import { browser, make, opened, server, skip, sound, withBrowserAndServer } from "./support.mjs";
 
-const skip = executable ? false : "no browser is here";
 const RULE = "hospital_de_corridor_width_corridor";
-let browser;
-let server;
-
-before(async () => {
-  if (skip) return;
-  browser = await launch();
-  server = await new Server().start();
-});
-after(async () => {
-  await browser?.close();
-  await server?.remove();
-});
+withBrowserAndServer();
 
 test("another figure for a rule shows what it changes, is written, listed and taken back", { skip }, async () => {
   const { page, context, faults } = await opened(browser, server.url);

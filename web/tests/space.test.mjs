@@ -1,22 +1,10 @@
 /** The view in space: pictures of many colors, doors that open, things that are picked and their parts that move. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
-import { executable, launch, make, opened, Server, sound } from "./support.mjs";
+import { browser, make, opened, server, skip, sound, withBrowserAndServer } from "./support.mjs";
 
-const skip = executable ? false : "no browser is here";
-let browser;
-let server;
-
-before(async () => {
-  if (skip) return;
-  browser = await launch();
-  server = await new Server().start();
-});
-after(async () => {
-  await browser?.close();
-  await server?.remove();
-});
+withBrowserAndServer();
 
 /** Returns how many colors the view has, and a sum that another picture does not have. */
 function picture(page) {

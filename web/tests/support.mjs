@@ -5,6 +5,7 @@ import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "no
 import { tmpdir } from "node:os";
 import { extname, join, resolve } from "node:path";
 import { createInterface } from "node:readline";
+import { after, before } from "node:test";
 
 import { chromium } from "playwright-core";
 
@@ -14,6 +15,8 @@ const PROGRAM = resolve(process.env.D3DGEN ?? "../target/debug/d3dgen");
 export const PROMPT = "hospital ward with 8 rooms in Germany, for a delivery robot";
 
 export const executable = BROWSERS.find((path) => path && existsSync(path));
+/** Why tests in a browser do not run here; false where they do. */
+export const skip = executable ? false : "no browser is here";
 
 /** Folder of a built page that is shown instead of the one in the program, so that a change needs no new program. */
 const PAGE = process.env.D3DGEN_PAGE;
@@ -59,6 +62,23 @@ export class Server {
 
 export function launch() {
   return chromium.launch({ executablePath: executable, args: ["--no-sandbox", "--enable-unsafe-swiftshader"] });
+}
+
+/** What the tests of a file share: there from the first of them on, see `withBrowserAndServer`. */
+export let browser;
+export let server;
+
+/** Has a browser and a server for the tests of the file that calls it, and ends both after them. */
+export function withBrowserAndServer() {
+  before(async () => {
+    if (skip) return;
+    browser = await launch();
+    server = await new Server().start();
+  });
+  after(async () => {
+    await browser?.close();
+    await server?.remove();
+  });
 }
 
 /** Opens the page in a context of its own; `faults` collects what must not be. */

@@ -1,23 +1,11 @@
 /** What is asked for, fact by fact: read while one types, changed by hand, built as it stands. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
-import { built, drawn, executable, launch, make, opened, saved, Server, sound } from "./support.mjs";
+import { browser, built, drawn, make, opened, saved, server, skip, sound, withBrowserAndServer } from "./support.mjs";
 
-const skip = executable ? false : "no browser is here";
 const PROMPT = "flat in Oslo with 3 bedrooms, a study, a kitchen with an island, please flumpf it";
-let browser;
-let server;
-
-before(async () => {
-  if (skip) return;
-  browser = await launch();
-  server = await new Server().start();
-});
-after(async () => {
-  await browser?.close();
-  await server?.remove();
-});
+withBrowserAndServer();
 
 const chip = (page, text) => page.getByTestId("chip").filter({ hasText: text });
 
