@@ -34,6 +34,11 @@ export function t(key: TextKey, values: Record<string, string | number> = {}): s
   return text.replace(/\{(\w+)\}/g, (_, name: string) => String(values[name] ?? ""));
 }
 
+/** Returns the text of a key that is made of data, and `or` where there is none for it. */
+export function told(key: string, or: string, values: Record<string, string | number> = {}): string {
+  return key in en ? t(key as TextKey, values) : or;
+}
+
 /** Returns a figure as the reader's language writes it, with at most `digits` behind the point. */
 export function figure(value: number, digits = 2): string {
   return value.toLocaleString(texts.language, { maximumFractionDigits: digits });

@@ -226,6 +226,7 @@ fn person(
         spotlight: round.is_some_and(|r| r.spotlight),
         leaves: round.is_some_and(|r| r.leaves),
         begins_s: 0.0,
+        locked: false,
         steps,
         agent_id,
     })
