@@ -43,10 +43,11 @@ test("a robot's work is changed: turn, stops, load and where it loads, each one 
   const { page, context, faults } = await opened(browser, server.url);
   await make(page);
   await page.getByTestId("stage-people").click();
-  const work = page.locator('[data-testid="robot-work"][data-robot-id="delivery_robot_1"]');
+  const work = page.locator('[data-testid="robot-work"][data-work-of="delivery_robot_1"]');
   const stops = async () => (await work.getByTestId("stop").allInnerTexts()).map((text) => text.split("\n")[0].replace(/ [\d.]+ m,.*/, ""));
+  await work.getByTestId("stop").first().waitFor();
   const was = await stops();
-  assert.ok(was.length > 3);
+  assert.ok(was.length > 2, was.join());
   const undo = page.locator('[data-testid="undo"]:not([disabled])');
   const done = async (what) => {
     await undo.waitFor({ timeout: 20_000 });
@@ -92,12 +93,12 @@ test("a person's steps are put in another turn, timed and left out", { skip }, a
   const { page, context, faults } = await opened(browser, server.url);
   await make(page);
   await page.getByTestId("stage-people").click();
-  const nurse = page.locator('[data-testid="person"][data-agent-id="nurse_1"]');
+  const nurse = page.locator('[data-testid="person"][data-steps-of="nurse_1"]');
   await nurse.locator("summary").click();
   const count = await nurse.getByTestId("stop").count();
   assert.ok(count > 2, `${count} steps`);
   await nurse.getByTestId("stop-out").nth(1).click();
-  await page.waitForFunction((n) => document.querySelectorAll('[data-agent-id="nurse_1"] [data-testid="stop"]').length === n, count - 1);
+  await page.waitForFunction((n) => document.querySelectorAll('[data-steps-of="nurse_1"] [data-testid="stop"]').length === n, count - 1);
   await nurse.getByTestId("step-seconds").first().fill("77");
   await page.keyboard.press("Tab");
   await nurse.getByTestId("task-free").waitFor();

@@ -1,12 +1,12 @@
-//! What a person set of robots' jobs and people's steps: it stays when the scenario is made anew, as far as its points, rooms
-//! and stations are still there. Routes follow the jobs.
+//! What a person set of robots' jobs: it stays when the scenario is made anew, as far as its points are still there. Routes
+//! follow the jobs.
 
 use std::collections::BTreeSet;
 
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
-use d3dgen_model::scenario::{Agent, Poi, RobotJob, RobotTask, Scenario, Station, Step};
+use d3dgen_model::scenario::{Poi, RobotJob, RobotTask, Scenario};
 use d3dgen_model::scene_graph::SceneGraph;
 
 use super::floor::Floor;
@@ -20,7 +20,7 @@ pub(crate) struct Storey<'a> {
     pub placements: &'a Placements,
 }
 
-/// Gives locked robots the jobs, and locked people the steps, that they have in an earlier scenario.
+/// Gives locked robots the jobs that they have in an earlier scenario.
 pub(crate) fn keep(scenario: &mut Scenario, before: &Scenario, storeys: &[Storey], domain: &Domain) {
     let points: BTreeSet<String> = scenario.pois.iter().map(|p| p.poi_id.clone()).collect();
     let mut changed: BTreeSet<i32> = BTreeSet::new();
@@ -36,25 +36,6 @@ pub(crate) fn keep(scenario: &mut Scenario, before: &Scenario, storeys: &[Storey
     }
     for storey in storeys.iter().filter(|s| changed.contains(&s.level)) {
         find_routes(scenario, storey, domain);
-    }
-    let Scenario { agents, stations, .. } = scenario;
-    let people: BTreeSet<String> = agents.iter().map(|a| a.agent_id.clone()).collect();
-    for agent in agents {
-        let Some(own) = before.agents.iter().find(|a| a.locked && a.agent_id == agent.agent_id) else { continue };
-        let mut known =
-            before.stations.iter().filter(|s| own.steps.iter().any(|t| t.station.as_ref() == Some(&s.station_id)));
-        // a station that nobody else uses any more is listed by who uses it
-        let missing: Vec<Station> =
-            known.by_ref().filter(|s| !stations.iter().any(|t| t.station_id == s.station_id)).cloned().collect();
-        let stands = |s: &Station| {
-            storeys.iter().any(|t| t.placements.placements.iter().any(|p| p.placement_id == s.placement_id))
-        };
-        stations.extend(missing.into_iter().filter(stands));
-        let steps: Vec<Step> =
-            own.steps.iter().filter_map(|step| step_still_there(step, storeys, stations, &people)).collect();
-        if !steps.is_empty() || own.steps.is_empty() {
-            take_steps(agent, own, steps);
-        }
     }
 }
 
@@ -93,27 +74,4 @@ fn find_routes(scenario: &mut Scenario, storey: &Storey, domain: &Domain) {
     for task in scenario.robots.iter_mut().filter(|t| is_here(t)) {
         *task = routed.next().expect("as many as were taken");
     }
-}
-
-/// Returns a step at the place where its station stands now; `None` where its room or station is gone.
-fn step_still_there(step: &Step, storeys: &[Storey], stations: &[Station], people: &BTreeSet<String>) -> Option<Step> {
-    storeys.iter().find(|s| s.plan.room(&step.room_id).is_some())?;
-    let station = step.station.as_ref().map(|id| stations.iter().find(|s| &s.station_id == id));
-    let pose = match station {
-        Some(station) => station?.before,
-        None => step.pose,
-    };
-    Some(Step { pose, with: step.with.clone().filter(|id| people.contains(id)), ..step.clone() })
-}
-
-/// Has a person take steps, which lead through these rooms.
-fn take_steps(agent: &mut Agent, own: &Agent, steps: Vec<Step>) {
-    if steps.is_empty() {
-        agent.waypoints.clone_from(&own.waypoints);
-    } else {
-        agent.waypoints = steps.iter().map(|s| s.room_id.clone()).collect();
-        agent.waypoints.dedup();
-    }
-    agent.steps = steps;
-    agent.locked = true;
 }

@@ -95,6 +95,7 @@ pub fn generate_as(
             .map(|(&(level, plan, placements), graph)| kept::Storey { level, graph, plan, placements })
             .collect();
         kept::keep(&mut scenario, kept, &storeys, domain);
+        people::keep_steps(&mut scenario, kept, &building);
     }
     conditions::add(&mut scenario, plan, domain);
     Ok(scenario)

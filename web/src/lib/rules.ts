@@ -20,8 +20,18 @@ export interface RuleRow {
 
 const RANK: Record<Standing, number> = { broken: 0, advice: 1, held: 2, undecided: 3, elsewhere: 4 };
 
+/** Unit of what is so or is not. */
+const TRUTH = "boolean";
+
+/** Returns what was measured, in words: `1.5 m`; nothing where nothing was. */
+export function measuredIn(result: ConstraintResult): string {
+  if (result.measured === undefined) return "";
+  return result.unit === TRUTH ? t(result.measured ? "yes" : "no") : `${figure(result.measured)} ${unitSaid(result.unit)}`;
+}
+
 /** Returns what a constraint requires, in words: `at least 1.2 m`. */
 export function required(result: ConstraintResult): string {
+  if (result.unit === TRUTH) return "";
   const unit = unitSaid(result.unit);
   const { requiredMin: min, requiredMax: max } = result;
   if (min !== undefined && max !== undefined && min !== max) return `${figure(min)} – ${figure(max)} ${unit}`;
@@ -32,7 +42,7 @@ export function required(result: ConstraintResult): string {
 }
 
 export function ofConstraint(result: ConstraintResult): Broken {
-  const measured = result.measured === undefined ? "" : `${figure(result.measured)} ${unitSaid(result.unit)}`;
+  const measured = measuredIn(result);
   return {
     id: result.constraintId,
     subject: result.subject,

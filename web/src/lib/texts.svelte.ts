@@ -51,7 +51,7 @@ export function words(id: string): string {
 
 /** Returns a unit as people write it: `m^2` becomes `m²`. */
 export function unitSaid(unit: string): string {
-  return unit.replace("^2", "²").replace("^3", "³");
+  return unit.replace("^2", "²").replace("^3", "³").replace(/^deg$/, "°");
 }
 
 /** Returns the name of a storey. */
