@@ -99,11 +99,17 @@ function fileOf(address) {
 
 /** Answers with a file of the folder, under the policy that the server sends with its own page. */
 async function show(route) {
-  const path = fileOf(new URL(route.request().url()));
-  const own = await route.fetch({ url: new URL("/", route.request().url()).href });
-  const policy = own.headers()["content-security-policy"] ?? "";
-  const headers = { "content-type": TYPES[extname(path)], "content-security-policy": policy };
-  await route.fulfill({ body: readFileSync(path), headers });
+  const address = new URL(route.request().url());
+  const path = fileOf(address);
+  const headers = { "content-type": TYPES[extname(path)], "content-security-policy": await policyOf(address.origin) };
+  // a page that was closed meanwhile wants no answer
+  await route.fulfill({ body: readFileSync(path), headers }).catch(() => {});
+}
+
+const policies = new Map();
+function policyOf(origin) {
+  if (!policies.has(origin)) policies.set(origin, fetch(origin).then((own) => own.headers.get("content-security-policy") ?? ""));
+  return policies.get(origin);
 }
 
 async function watch(context, faults) {
