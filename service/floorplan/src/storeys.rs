@@ -2,7 +2,7 @@
 
 use d3dgen_knowledge::Limits;
 use d3dgen_model::domain::{Domain, Scheme, Storeys, Zone};
-use d3dgen_model::floorplan::{CostTerm, Floorplan};
+use d3dgen_model::floorplan::{CostTerm, Floorplan, PlanRoom};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
 use d3dgen_model::seed::Stream;
@@ -18,7 +18,7 @@ use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, meters, nearest};
 use super::party::Party;
 use super::search::search;
 use super::spec::{Brief, RoomSpec};
-use super::{ATTEMPTS, LONGEST_BAR, schemes};
+use super::{ATTEMPTS, LONGEST_BAR, net_area_m2, schemes};
 
 /// Share of a storey that may jut out over the one below without a word.
 pub(crate) const OVERHANG_SHARE: f64 = 0.06;
@@ -28,12 +28,16 @@ const FEW_PLANS: usize = 3;
 /// Plans of a storey that are compared when the first ones jut out further.
 const COMPARED: usize = 6;
 const COMPARED_LARGE: usize = 2;
-/// How often a home is stacked at most, what a share of a storey counts that the one above leaves open beside one that juts
-/// out, and how ragged a stack may be that is taken at once.
+/// How often a home is stacked at most, what a share of a storey counts that juts out, and one that the storey above leaves open,
+/// and how ragged a stack of short ways may be that is taken at once.
 const STACKS: usize = 4;
 /// The same of other buildings that are no wings, where a storey juts out further than it may without a word.
 const STACKS_OF_OTHERS: usize = 3;
+const JUTS: f64 = 3.0;
 const SET_BACK: f64 = 0.3;
+/// Share of a storey of a home that is hall and stairs from which on that counts too, and what more of it counts.
+const USUAL_WAY: f64 = 0.2;
+const LONG_WAY: f64 = 0.6;
 const WELL_STACKED: f64 = 0.06;
 /// Longest storey, about, that is one bar between two stairs, m: others walk less in wings.
 const LONGEST_BAR_M: f64 = 64.0;
@@ -52,6 +56,8 @@ struct Planned {
     overhang: f64,
     /// Share of the storey below that it leaves open.
     set_back: f64,
+    /// Share of it that is hall and stairs.
+    way: f64,
 }
 
 /// Plans a building of several storeys.
@@ -167,7 +173,7 @@ fn bar_length(brief: &Brief) -> i32 {
         if is_nestable(brief, i) { 0.5 * front } else { front }
     });
     let fronts: Vec<f64> = fronts.collect();
-    let core = brief.core.as_ref().map_or(0.0, |c| meters(c.width));
+    let core = brief.core.as_ref().map_or(0.0, |c| meters(c.width + c.far.map_or(0, |far| far.1)));
     let half = (core + fronts.iter().sum::<f64>()) / 2.0;
     nearest(fronts.into_iter().fold(half, f64::max))
 }
@@ -194,7 +200,8 @@ impl Plan<'_> {
             let done = match self.stack(briefs, n, stop) {
                 Ok(stack) => {
                     let juts = stack.iter().any(|p| p.overhang > OVERHANG_SHARE && p.below.comb.is_none());
-                    let ragged = stack.iter().map(|p| p.overhang + SET_BACK * p.set_back).sum::<f64>();
+                    let long = |p: &Planned| if homes { LONG_WAY * (p.way - USUAL_WAY).max(0.0) } else { 0.0 };
+                    let ragged = stack.iter().map(|p| JUTS * p.overhang + SET_BACK * p.set_back + long(p)).sum::<f64>();
                     if best.as_ref().is_none_or(|b| ragged < b.0) {
                         best = Some((ragged, stack));
                     }
@@ -315,7 +322,9 @@ fn storey(
                 let overhang = found.score.overhang;
                 let set_back = set_back(&brief, &boxes);
                 if best.as_ref().is_none_or(|b| overhang < b.overhang) {
-                    best = Some(Planned { plan, below, overhang, set_back });
+                    let passed = |r: &&PlanRoom| r.circulation;
+                    let way = plan.rooms.iter().filter(passed).map(|r| r.net_area_m2).sum::<f64>() / net_area_m2(&plan);
+                    best = Some(Planned { plan, below, overhang, set_back, way });
                 }
                 compared += 1;
                 let most = if comb_built { COMPARED_LARGE } else { COMPARED };
