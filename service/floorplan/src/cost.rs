@@ -57,7 +57,7 @@ const FAR_FROM_STATION: f64 = 0.15;
 /// What a building that is to be compact pays for the share of the rectangle around it that it leaves open; the part of that which
 /// one pays that stands between neighbors, and any other along one straight corridor.
 const NOTCHED: f64 = 30.0;
-const NOTCHED_IN_ROW: f64 = 0.5;
+const NOTCHED_IN_ROW: f64 = 1.0;
 const NOTCHED_BAR: f64 = 0.4;
 /// What each gate for vehicles costs that lies at another side of the building than most of its kind.
 const GATES_APART: f64 = 8.0;

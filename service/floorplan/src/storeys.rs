@@ -2,7 +2,7 @@
 
 use d3dgen_knowledge::Limits;
 use d3dgen_model::domain::{Domain, Scheme, Storeys, Zone};
-use d3dgen_model::floorplan::{CostTerm, Floorplan, PlanRoom};
+use d3dgen_model::floorplan::{CostTerm, Floorplan};
 use d3dgen_model::geometry::to_mm;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
 use d3dgen_model::seed::Stream;
@@ -35,9 +35,11 @@ const STACKS: usize = 4;
 const STACKS_OF_OTHERS: usize = 3;
 const JUTS: f64 = 3.0;
 const SET_BACK: f64 = 0.3;
-/// Share of a storey of a home that is hall and stairs from which on that counts too, and what more of it counts.
+/// Share of a storey of a home that is hall and stairs from which on that counts too, what more of it counts, and what the share
+/// of the rectangle around it counts that it leaves open.
 const USUAL_WAY: f64 = 0.2;
 const LONG_WAY: f64 = 0.6;
+const NOTCHED: f64 = 0.3;
 const WELL_STACKED: f64 = 0.06;
 /// Longest storey, about, that is one bar between two stairs, m: others walk less in wings.
 const LONGEST_BAR_M: f64 = 64.0;
@@ -58,6 +60,16 @@ struct Planned {
     set_back: f64,
     /// Share of it that is hall and stairs.
     way: f64,
+    /// Share of the rectangle around it that it leaves open.
+    open: f64,
+}
+
+impl Planned {
+    /// Returns how ragged it makes a stack of storeys, of a home how much of it is ways too.
+    fn ragged(&self, home: bool) -> f64 {
+        let way = if home { LONG_WAY * (self.way - USUAL_WAY).max(0.0) + NOTCHED * self.open } else { 0.0 };
+        JUTS * self.overhang + SET_BACK * self.set_back + way
+    }
 }
 
 /// Plans a building of several storeys.
@@ -200,8 +212,7 @@ impl Plan<'_> {
             let done = match self.stack(briefs, n, stop) {
                 Ok(stack) => {
                     let juts = stack.iter().any(|p| p.overhang > OVERHANG_SHARE && p.below.comb.is_none());
-                    let long = |p: &Planned| if homes { LONG_WAY * (p.way - USUAL_WAY).max(0.0) } else { 0.0 };
-                    let ragged = stack.iter().map(|p| JUTS * p.overhang + SET_BACK * p.set_back + long(p)).sum::<f64>();
+                    let ragged = stack.iter().map(|p| p.ragged(homes)).sum::<f64>();
                     if best.as_ref().is_none_or(|b| ragged < b.0) {
                         best = Some((ragged, stack));
                     }
@@ -322,9 +333,8 @@ fn storey(
                 let overhang = found.score.overhang;
                 let set_back = set_back(&brief, &boxes);
                 if best.as_ref().is_none_or(|b| overhang < b.overhang) {
-                    let passed = |r: &&PlanRoom| r.circulation;
-                    let way = plan.rooms.iter().filter(passed).map(|r| r.net_area_m2).sum::<f64>() / net_area_m2(&plan);
-                    best = Some(Planned { plan, below, overhang, set_back, way });
+                    let (way, open) = (way_share(&plan), open_share(&boxes));
+                    best = Some(Planned { plan, below, overhang, set_back, way, open });
                 }
                 compared += 1;
                 let most = if comb_built { COMPARED_LARGE } else { COMPARED };
@@ -338,6 +348,18 @@ fn storey(
         }
     }
     best.ok_or(last)
+}
+
+/// Returns the share of the net floor of a plan that is hall, corridor and stairs.
+fn way_share(plan: &Floorplan) -> f64 {
+    let ways = plan.rooms.iter().filter(|r| r.circulation).map(|r| r.net_area_m2);
+    ways.sum::<f64>() / net_area_m2(plan).max(1.0)
+}
+
+/// Returns the share of the rectangle around some boxes that they leave open.
+fn open_share(boxes: &[(usize, Cellbox)]) -> f64 {
+    let around = boxes.iter().map(|b| b.1).reduce(Cellbox::around).map_or(1.0, |all| all.area_m2());
+    1.0 - boxes.iter().map(|b| b.1.area_m2()).sum::<f64>() / around
 }
 
 /// Returns the boxes of rooms that people sleep, live or work in.

@@ -188,7 +188,7 @@ fn behind_lock(domain: &Domain, rooms: &[Planned], lock: usize, pair: &Pair) -> 
     let free = |r: &Planned| {
         r.room_type == pair.b && r.host.is_none() && r.kind.access != Access::Host && (larger(r.kind) || r.name.is_some())
     };
-    if !locks || kind.wet || !domain.room_types.iter().any(before) {
+    if !locks || !domain.room_types.iter().any(before) {
         return None;
     }
     rooms.iter().position(free)
