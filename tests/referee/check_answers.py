@@ -24,7 +24,7 @@ import tomllib
 ROOT = pathlib.Path(__file__).parents[2]
 BED_FOR_TWO_M, BENCH_SEAT_M, SOFA_SEAT_M = 1.35, 0.55, 0.65
 AREA_MISS, ROOM_MISS = 0.15, 0.05
-DESK = re.compile(r"(^|_)(desk|workstation|console)(_|$)")
+DESK = re.compile(r"(^|_)(desk|workstation|console)$")
 SEAT = re.compile(r"chair|stool|bench|sofa|seat|couch|pew|armchair|bean_bag|cushion")
 BED = re.compile(r"(^|_)(bed|bunk|cot|futon)(_|$)|_bed$")
 
@@ -114,6 +114,10 @@ class World:
 
         return sum(one(p) for r in rooms for p in self.in_room(r))
 
+    def commonest(self, rooms):
+        kinds = collections.Counter(p["object"] for r in rooms for p in self.in_room(r) if SEAT.search(p["object"]) and "swivel" not in p["object"])
+        return max(kinds.values(), default=0)
+
     def beds(self, rooms, sleepers=False):
         beds = [p for r in rooms for p in self.in_room(r) if BED.search(p["object"])]
         return sum(2 if sleepers and p["size_m"][0] >= BED_FOR_TWO_M else 1 for p in beds)
@@ -172,7 +176,8 @@ def judge_rooms(world, ask, fact, answer):
     elif not ids or answer.get("unit") == "" and answer.get("measured", 0) < answer.get("asked", 0):
         taken = {i for a in world.answers.values() if a["kind"] == "rooms" for i in a.get("ids", [])}
         free = [r["id"] for r in world.rooms.values() if r["room_type"] == fact["room"].get("id") and level in (None, r.get("level", 0)) and r["id"] not in taken]
-        if free:
+        joins = fact["room"].get("id") in ("elevator", "stairwell") and not world.graph.get("links")
+        if free and not joins:
             yield f"{free} are there"
 
 
@@ -211,7 +216,7 @@ def judge_capacity(world, ask, fact, answer):
         if kind == "beds":
             return {world.beds(rooms)}
         lying = sum("couch" in p["object"] or "chair" in p["object"] or BED.search(p["object"]) is not None for r in rooms for p in world.in_room(r))
-        return {world.desks(rooms), world.seats(rooms), world.seats(rooms, guests=True), lying}
+        return {world.desks(rooms), world.seats(rooms), world.seats(rooms, guests=True), world.commonest(rooms), lying}
 
     def holds(rooms):
         over = max(n // 10, 1) if kind == "seats" and fact["count"].get("bound", "exactly") == "exactly" else 0

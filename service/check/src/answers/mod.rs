@@ -27,6 +27,8 @@ const MEASURE_MISS: f64 = 0.05;
 /// Letters of a name from which a conflict that has it is taken to speak of the wish that has it too; names in scripts whose words are
 /// short have fewer.
 const TELLING_LETTERS: usize = 4;
+/// Code of the conflict that lists all words that nobody understood: it speaks of no wish.
+const NOT_UNDERSTOOD: &str = "not_understood";
 /// Rooms and things that a reason names, at most.
 const MOST_NAMED: usize = 4;
 
@@ -120,7 +122,9 @@ pub fn answers(brief: &Brief, world: &World, domain: &Domain) -> Vec<AskAnswer> 
 impl<'a> Asked<'a> {
     fn answer(&self, at: usize, ask: &Ask) -> AskAnswer {
         let mut found = self.find(at, ask).and(self.unread_part(ask));
-        if found.fate != Fate::Honored
+        // what is there and of another kind or not wholly read is not what a conflict is about
+        let is_short = found.fate == Fate::LeftOut || found.fate == Fate::Substituted && found.asked.is_some();
+        if is_short
             && let Some(message) = self.told_of(&ask.fact)
         {
             found.fate = Fate::Contradicted;
@@ -193,6 +197,7 @@ impl<'a> Asked<'a> {
         };
         let graph = &self.world.scene_graph;
         let said = graph.conflicts.iter().chain(&self.world.floorplan.conflicts);
+        let said = said.filter(|n| n.code != NOT_UNDERSTOOD);
         said.map(|n| &n.message).find(|m| subjects.iter().all(|s| names(m, s))).cloned()
     }
 

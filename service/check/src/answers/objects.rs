@@ -1,6 +1,6 @@
 //! Objects: in the rooms that they were asked for in, in each of them where that is said, and as they were said to be.
 
-use d3dgen_model::brief::{Ask, AskedCount, Bound, ObjectsAsk};
+use d3dgen_model::brief::{Ask, AskedCount, ObjectsAsk};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::scene_graph::GraphRoom;
 
@@ -112,14 +112,17 @@ impl<'a> Asked<'a> {
     }
 }
 
-/// Counts objects of a building, a storey or a room. What more of them a building has belongs to rooms that have them anyway; in a room
-/// that is named the number is meant.
+/// Counts objects of a building, a storey or a room. Of a building the number may be that of one of its rooms: 24 racks in the data hall,
+/// and one more in the control room.
 fn of_all(asked: &ObjectsAsk, place: &Place, so: &[&Placement]) -> Finding {
-    let meant = asked.count.bound == Bound::Exactly && !place.named;
-    let counted: Vec<&Placement> = if meant { so.iter().copied().take(asked.count.n as usize).collect() } else { so.to_vec() };
+    let in_room = |r: &&GraphRoom| so.iter().copied().filter(|p| p.room_id == r.id).collect::<Vec<_>>();
+    let of_rooms = || place.rooms.iter().map(|r| in_room(&r)).find(|own| asked.count.allows(own.len() as u32));
+    let counted = match asked.count.allows(so.len() as u32) || place.named {
+        true => so.to_vec(),
+        false => of_rooms().unwrap_or_else(|| so.to_vec()),
+    };
     let n = counted.len() as u32;
-    Finding::number(asked.count, n, || format!("{} asked for {}, {n} there", asked.count, place.name))
-        .with(ids_of(&counted))
+    Finding::number(asked.count, n, || format!("{} asked for, {n} {}", asked.count, place.name)).with(ids_of(&counted))
 }
 
 /// Returns the word of an id that says what it is: `table` of `dining_table_8`.

@@ -1,6 +1,6 @@
 //! Places for people, vehicles and animals: counted by what stands in the rooms that are to have them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_model::brief::{Ask, AskedCount, Bound, CapacityAsk, PlaceKind};
 use d3dgen_model::domain::{Domain, ObjectType, RoomType, Shape};
@@ -72,12 +72,10 @@ impl<'a> Asked<'a> {
         let rooms = self.world.scene_graph.rooms.iter().filter(|r| level.is_none_or(|l| r.level == l));
         let all: Vec<&GraphRoom> = rooms.collect();
         let free: Vec<&GraphRoom> = all.iter().copied().filter(|r| !self.claims.is_taken(&r.id)).collect();
-        let of_free = self.places(asked, &free).filter(|found| found.measured > Some(0.0));
-        let of_all = self.places(asked, &all);
-        let kept = |found: &Finding| found.fate == Fate::Honored;
-        let all_kept = of_all.as_ref().is_some_and(kept);
-        let first = of_free.filter(|found| kept(found) || !all_kept);
-        first.or(of_all).unwrap_or_else(|| not_counted(asked.of))
+        let found = [self.places(asked, &free), self.places(asked, &all)].into_iter().flatten();
+        let miss = |found: &Finding| (found.measured.unwrap_or(0.0) - f64::from(asked.count.n)).abs();
+        let nearest = found.min_by(|a, b| a.fate.cmp(&b.fate).then(miss(a).total_cmp(&miss(b))));
+        nearest.unwrap_or_else(|| not_counted(asked.of))
     }
 
     /// Counts the places in rooms: the number is kept when one of the ways to count them there gives it; else the first of them is told.
@@ -112,7 +110,8 @@ impl<'a> Asked<'a> {
             PlaceKind::Seats => {
                 let desks = of_rooms(desks, works_in);
                 let seats = of_rooms(guest_seats, |domain, kind| !works_in(domain, kind));
-                vec![desks, seats, of_rooms(guest_seats, is_sat_in), self.treated(rooms), all(seats_of)]
+                let sat_in = of_rooms(guest_seats, is_sat_in);
+                vec![desks, seats, sat_in, self.commonest_seats(rooms), self.treated(rooms), all(seats_of)]
             }
             // the desk of a booth or a reading room is no work place of the building
             PlaceKind::Desks => vec![of_rooms(desks, works_in), all(desks)],
@@ -131,6 +130,21 @@ impl<'a> Asked<'a> {
         };
         let (some, none): (Vec<Held>, Vec<Held>) = readings.into_iter().partition(|held| held.places > 0);
         Some(if some.is_empty() { none } else { some })
+    }
+
+    /// Returns the seats of the kind that most of them are: the chairs at the tables of a café, and not the bench at its door.
+    fn commonest_seats(&self, rooms: &[&GraphRoom]) -> Held {
+        let held = self.held(guest_seats, rooms);
+        let kind = |id: &String| {
+            let placed = self.world.placements.placements.iter().find(|p| &p.placement_id == id);
+            placed.map_or("", |p| p.object.as_str())
+        };
+        let mut kinds: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+        for id in &held.ids {
+            kinds.entry(kind(id)).or_default().push(id.clone());
+        }
+        let most = kinds.into_values().max_by_key(Vec::len).unwrap_or_default();
+        Held { places: most.len() as u32, ids: most }
     }
 
     /// Returns the places that rooms are counted by: bays, stalls, racks.

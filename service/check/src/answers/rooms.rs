@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use d3dgen_model::brief::{Ask, AskedCount, Fact, RoomsAsk, Subject};
 use d3dgen_model::domain::{Mount, Shape};
 use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom};
+use d3dgen_model::offer::Wet;
 use d3dgen_model::report::Fate;
 use d3dgen_model::scene_graph::GraphRoom;
 
@@ -125,9 +126,20 @@ impl<'a> Asked<'a> {
         named.filter_map(|subject| subject.id.as_deref()).filter(|id| room.id.as_deref() != Some(id)).collect()
     }
 
+    /// Returns the rooms of a name that others come with; of bathrooms all, whichever type they are.
+    fn guests_meant(&self, ask: &Ask, each: &Subject) -> Vec<&'a GraphRoom> {
+        let mut rooms = self.rooms_meant(ask, each);
+        let wet = Wet::of(self.domain);
+        let is_bathroom = |id: &str| self.domain.room_type_or_lent(id).is_some_and(|kind| wet.is_bathroom(kind));
+        if each.id.as_deref().is_some_and(is_bathroom) {
+            rooms.extend(self.world.scene_graph.rooms.iter().filter(|r| is_bathroom(&r.room_type)));
+        }
+        rooms
+    }
+
     /// Returns whether each of these rooms has a door to a room of its own of another kind.
     fn one_each(&self, ask: &Ask, rooms: &[&'a GraphRoom], each: &Subject) -> Finding {
-        let wanted = self.rooms_meant(ask, each);
+        let wanted = self.guests_meant(ask, each);
         let mut given: BTreeSet<&str> = BTreeSet::new();
         let mut lacking: Vec<&GraphRoom> = Vec::new();
         for room in rooms {
@@ -139,7 +151,7 @@ impl<'a> Asked<'a> {
                 None => lacking.push(room),
             }
         }
-        let reason = || format!("{} without one of its own: {}", each.name, names_of(&lacking));
+        let reason = || format!("no `{}` of its own: {}", each.name, names_of(&lacking));
         Finding::number(AskedCount::at_least(rooms.len() as u32), given.len() as u32, reason)
     }
 

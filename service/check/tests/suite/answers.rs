@@ -204,7 +204,7 @@ fn a_robot_answers_for_where_it_is_sent() {
 fn a_conflict_that_names_the_wish_is_its_reason() {
     let sample = &SAMPLES[FLAT];
     let prompt = "flat with a helipad";
-    let words = vec![d3dgen_model::brief::PromptWords::of(prompt, 12, 19)];
+    let words = vec![PromptWords::of(prompt, 12, 19)];
     let fact = Fact::Rooms(RoomsAsk { room: Subject::unknown("helipad"), ..RoomsAsk::default() });
     let ask = Ask { id: "ask_1".into(), words, read_by: Default::default(), fact };
     let mut world =
