@@ -58,7 +58,7 @@ def is_kind(found, asked):
 def fits(found, subject, means=None):
     """Returns whether an id of the world is what a name of the brief means."""
     asked = subject.get("id") or as_id(subject["name"])
-    stands = means is not None and asked in means and is_kind(found, means[asked])
+    stands = means is not None and any(w in means and is_kind(found, means[w]) for w in (asked, "room" if "room" in asked else asked))
     return stands or is_kind(found, asked) or subject["name"].lower() in WORDS[found]
 
 
@@ -123,7 +123,9 @@ class World:
         return sum(2 if sleepers and p["size_m"][0] >= BED_FOR_TWO_M else 1 for p in beds)
 
     def is_later(self, first, second):
-        """Returns whether the words of two wishes stand in different sentences, or the second ones within those of another fact."""
+        """Returns whether a wish names rooms again: by the same name alone, in another sentence, or within the words of another fact."""
+        if next(iter(second["fact"].values())) == {"room": next(iter(first["fact"].values()))["room"], "count": {"n": 1, "bound": "at_least"}}:
+            return True
         ends = [(w[-1]["start"], w[-1]["end"]) for w in (first["words"], second["words"]) if w]
         if len(ends) < 2:
             return True
@@ -219,7 +221,7 @@ def judge_capacity(world, ask, fact, answer):
         return {world.desks(rooms), world.seats(rooms), world.seats(rooms, guests=True), world.commonest(rooms), lying}
 
     def holds(rooms):
-        over = max(n // 10, 1) if kind == "seats" and fact["count"].get("bound", "exactly") == "exactly" else 0
+        over = max(n // 10, 2) if kind == "seats" and fact["count"].get("bound", "exactly") == "exactly" else 0
         return any(allows(fact["count"], c) or n <= c <= n + over for c in counts(rooms))
 
     if fact.get("each_room") or fact.get("of_rooms"):

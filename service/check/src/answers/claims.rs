@@ -4,7 +4,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_model::brief::{Ask, Bound, Brief, Fact, RoomsAsk, Subject};
-use d3dgen_model::domain::{Domain, RoomType, Words};
+use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, RoomType, Words};
+use d3dgen_model::offer::sleeps;
 use d3dgen_model::scene_graph::GraphRoom;
 use d3dgen_model::world::World;
 
@@ -51,8 +52,8 @@ impl<'a> Kinds<'a> {
         let name = as_id(&subject.name);
         let id = subject.id.as_deref().unwrap_or(&name);
         let is_called = !name.is_empty() && is_same_name(&as_id(plan_name(room)), &name);
-        let meant = || self.means.and_then(|means| means.get(id)).is_some_and(|means| is_kind_of(&room.room_type, means));
-        let of_type = room.room_type == id || meant() || id == ENTRANCE && room.entrance;
+        let meant = self.meant(id).is_some_and(|meant| is_kind_of(&room.room_type, meant));
+        let of_type = room.room_type == id || meant || id == ENTRANCE && room.entrance;
         let kind = self.domain.room_type_or_lent(&room.room_type);
         let has = |k: &RoomType| has_word(&k.keywords, &subject.name) || has_word(&k.called, &subject.name);
         let worded = kind.is_some_and(has);
@@ -67,6 +68,16 @@ impl<'a> Kinds<'a> {
             (false, true) => Some(Likeness::Kind),
             (false, false) => None,
         }
+    }
+
+    /// Returns the type that the building has in the place of another: of a room to sleep in that only other kinds of buildings have
+    /// the one that its guests sleep in.
+    fn meant(&self, id: &str) -> Option<&'a str> {
+        let means = self.means?;
+        let domain = self.domain;
+        let lent = domain.room_type(id).is_none();
+        let asleep = || lent && domain.room_type_or_lent(id).is_some_and(|kind| sleeps(domain, kind).is_some());
+        means.get(id).or_else(|| means.get(GENERIC_ROOM_TYPE).filter(|_| asleep())).map(String::as_str)
     }
 
     /// Returns true for a room that stands for one that is asked for and not there: of the same part of the building, and furnished
@@ -204,7 +215,7 @@ fn share<'a>(brief: &Brief, wishes: &mut [(usize, Wish<'a>)], all: &[&'a GraphRo
             continue;
         }
         let likes = |room: &GraphRoom| all.iter().position(|r| r.id == room.id).is_some_and(|at| wish.likeness[at].is_some());
-        let same = |other: &Wish| other.rooms.iter().all(|r| likes(r)) && is_again(brief, other.ask, wish.ask);
+        let same = |other: &Wish| other.rooms.iter().all(|r| likes(r)) && is_again(brief, (other.ask, other.asked), (wish.ask, wish.asked));
         let first = wishes.iter().find(|(_, w)| !w.rooms.is_empty() && same(w));
         if let Some(rooms) = first.map(|(_, w)| w.rooms.clone()) {
             wishes[i].1.rooms = rooms;
@@ -233,9 +244,13 @@ fn countable<'a>(world: &'a World, domain: &Domain) -> Vec<&'a GraphRoom> {
     graph.rooms.iter().filter(|r| !joins(r) || first(r)).collect()
 }
 
-/// Returns true where the words of a fact speak of what another named, and ask for nothing more: in another sentence, or as a part of
-/// what is said of something else.
-fn is_again(brief: &Brief, first: &Ask, again: &Ask) -> bool {
+/// Returns true where a wish for rooms speaks of what another named, and asks for nothing more: by the same name without a word more, in
+/// another sentence, or as a part of what is said of something else.
+fn is_again(brief: &Brief, (first, named): (&Ask, &RoomsAsk), (again, asked): (&Ask, &RoomsAsk)) -> bool {
+    let plain = RoomsAsk { room: named.room.clone(), ..RoomsAsk::default() };
+    if *asked == plain {
+        return true;
+    }
     let (Some(a), Some(b)) = (first.words.last(), again.words.last()) else { return false };
     let (start, end) = if a.end <= b.start { (a.end, b.start) } else { (b.end, a.start) };
     let between: Vec<char> =

@@ -77,12 +77,13 @@ impl<'a> Asked<'a> {
         }
     }
 
-    /// Returns the objects of another kind that stand where one was asked for: a single bed in the place of a double one.
+    /// Returns the objects of another kind that stand where one was asked for: a single bed in the place of a double one, a sofa in
+    /// that of a sofa bed.
     fn like(&self, asked: &ObjectsAsk, place: &Place) -> Vec<&'a Placement> {
         let Some(id) = asked.object.id.as_deref().filter(|_| place.named) else { return Vec::new() };
-        let head = head_of(id);
+        let is_like = |other: &str| head_of(other) == head_of(id) || id.split('_').any(|part| part == other);
         let placements = self.world.placements.placements.iter();
-        placements.filter(|p| place.has(p) && head_of(&p.object) == head).collect()
+        placements.filter(|p| place.has(p) && is_like(&p.object)).collect()
     }
 
     /// Counts the rooms that have as many as each of them is to have.

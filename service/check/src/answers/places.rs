@@ -82,8 +82,9 @@ impl<'a> Asked<'a> {
     /// `None` for kinds of places that nothing here counts.
     fn places(&self, asked: &CapacityAsk, rooms: &[&GraphRoom]) -> Option<Finding> {
         let readings = self.readings(asked.of, rooms)?;
-        let allows = |n: u32| asked.count.allows(n) || asked.of == PlaceKind::Seats && is_a_table_more(asked.count, n);
-        let kept = readings.iter().position(|held| allows(held.places));
+        let is_seats = asked.of == PlaceKind::Seats;
+        let allows = |h: &Held| asked.count.allows(h.places) || is_seats && is_one_thing_more(asked.count, h);
+        let kept = readings.iter().position(allows);
         let held = readings.into_iter().nth(kept.unwrap_or(0)).unwrap_or_default();
         let n = held.places;
         let (fate, what) = (if n == 0 { Fate::LeftOut } else { Fate::Substituted }, label(asked.of));
@@ -144,7 +145,7 @@ impl<'a> Asked<'a> {
             kinds.entry(kind(id)).or_default().push(id.clone());
         }
         let most = kinds.into_values().max_by_key(Vec::len).unwrap_or_default();
-        Held { places: most.len() as u32, ids: most }
+        Held { places: most.len() as u32, most: 1, ids: most }
     }
 
     /// Returns the places that rooms are counted by: bays, stalls, racks.
@@ -175,6 +176,7 @@ impl<'a> Asked<'a> {
             let n = each(&Seat { width_m: placement.size_m[0], shape: object.shape, object });
             if n > 0 {
                 held.places += n;
+                held.most = held.most.max(n);
                 held.ids.push(placement.placement_id.clone());
             }
         }
@@ -193,10 +195,10 @@ impl<'a> Asked<'a> {
     }
 }
 
-/// Returns true for a few seats more than a number asked for: those of a table that is not full.
-fn is_a_table_more(count: AskedCount, n: u32) -> bool {
-    let over = (f64::from(count.n) * SEATS_OVER).max(1.0);
-    count.bound == Bound::Exactly && n > count.n && f64::from(n - count.n) <= over
+/// Returns true for a few seats more than a number asked for: those of a table or a bench that is not full.
+fn is_one_thing_more(count: AskedCount, held: &Held) -> bool {
+    let over = ((f64::from(count.n) * SEATS_OVER) as u32).max(1).max(held.most.saturating_sub(1));
+    count.bound == Bound::Exactly && held.places > count.n && held.places - count.n <= over
 }
 
 fn not_counted(kind: PlaceKind) -> Finding {
@@ -207,6 +209,8 @@ fn not_counted(kind: PlaceKind) -> Finding {
 #[derive(Default)]
 pub(super) struct Held {
     pub places: u32,
+    /// Places of the thing that has most.
+    pub most: u32,
     /// Ids of what has them.
     pub ids: Vec<String>,
 }

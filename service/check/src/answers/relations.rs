@@ -25,6 +25,9 @@ impl<'a> Asked<'a> {
         if b.is_empty() {
             return self.outdoors(asked, &a);
         }
+        if a.len() == 1 && b.len() == 1 && a[0].id == b[0].id {
+            return Finding::of(Fate::LeftOut, format!("both are one room: {}", a[0].name)).with(ids_of(&a));
+        }
         let ids = || ids_of(&a).into_iter().chain(ids_of(&b)).collect();
         let negative = matches!(asked.relation, RelationKind::NotFrom | RelationKind::AwayFrom);
         let lies = |x: &GraphRoom, y: &GraphRoom| x.id == y.id || self.lie_so(asked.relation, x, y);

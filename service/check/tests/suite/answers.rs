@@ -251,6 +251,9 @@ fn a_room_answers_one_wish_unless_it_is_named_again() {
     let two = [("a podcast room", named("meeting_room", "podcast room")), ("a photo room", named("meeting_room", "photo room"))];
     let asked = worded("a podcast room and a photo room", &two, &[]);
     assert_eq!(fates(office, &office.world, asked), [Fate::Honored, Fate::LeftOut], "one room for two");
+    let alike = [("a meeting room", named("meeting_room", "room")), ("but no dust in the room", named("meeting_room", "room"))];
+    let same = worded("a meeting room, but no dust in the room", &alike, &[]);
+    assert_eq!(fates(office, &office.world, same), [Fate::Honored, Fate::Honored], "the same name again");
     let again = worded("a podcast room. Lights in a photo room", &two, &[]);
     assert_eq!(fates(office, &office.world, again), [Fate::Honored, Fate::Honored], "another sentence speaks of it");
 }
