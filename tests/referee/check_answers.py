@@ -26,6 +26,7 @@ BED_FOR_TWO_M, BENCH_SEAT_M, SOFA_SEAT_M = 1.35, 0.55, 0.65
 AREA_MISS, ROOM_MISS = 0.15, 0.05
 DESK = re.compile(r"(^|_)(desk|workstation|console)$")
 SEAT = re.compile(r"chair|stool|bench|sofa|seat|couch|pew|armchair|bean_bag|cushion")
+ASLEEP = re.compile(r"bed|patient|guest|resident|dorm")
 BED = re.compile(r"(^|_)(bed|bunk|cot|futon)(_|$)|_bed$")
 
 
@@ -58,7 +59,7 @@ def is_kind(found, asked):
 def fits(found, subject, means=None):
     """Returns whether an id of the world is what a name of the brief means."""
     asked = subject.get("id") or as_id(subject["name"])
-    stands = means is not None and any(w in means and is_kind(found, means[w]) for w in (asked, "room" if "room" in asked else asked))
+    stands = means is not None and any(w in means and is_kind(found, means[w]) for w in (asked, "room" if ASLEEP.search(asked) else asked))
     return stands or is_kind(found, asked) or subject["name"].lower() in WORDS[found]
 
 
@@ -110,7 +111,7 @@ class World:
                 return 0
             if re.search("sofa|couch", name):
                 return max(int(width / SOFA_SEAT_M), 1)
-            return max(int(width / BENCH_SEAT_M + 1e-9), 1) if re.search("bench|seating|pew|row", name) else 1
+            return max(int(width / BENCH_SEAT_M + 1e-9), 1) if re.search("bench|seating|seats$|pew|row", name) else 1
 
         return sum(one(p) for r in rooms for p in self.in_room(r))
 
@@ -125,6 +126,9 @@ class World:
     def is_later(self, first, second):
         """Returns whether a wish names rooms again: by the same name alone, in another sentence, or within the words of another fact."""
         if next(iter(second["fact"].values())) == {"room": next(iter(first["fact"].values()))["room"], "count": {"n": 1, "bound": "at_least"}}:
+            return True
+        sums = [sum(k == "rooms" and not f.get("among") and a["words"] == x["words"] for x, k, f in self.asks.values()) > 1 for a in (first, second) if a["words"]]
+        if any(sums):
             return True
         ends = [(w[-1]["start"], w[-1]["end"]) for w in (first["words"], second["words"]) if w]
         if len(ends) < 2:

@@ -154,8 +154,7 @@ impl<'a> Claims<'a> {
             let Fact::Rooms(asked) = &ask.fact else { return None };
             let level = asked.level.or_else(|| level_said(brief, ask));
             let on_level = |room: &GraphRoom| level.is_none_or(|level| room.level == level);
-            let like =
-                |room: &&GraphRoom| kinds.likeness(&asked.room, room).filter(|_| !asked.among && on_level(room));
+            let like = |room: &&GraphRoom| kinds.likeness(&asked.room, room).filter(|_| !asked.among && on_level(room));
             Some((at, Wish { ask, asked, likeness: all.iter().map(like).collect(), rooms: Vec::new() }))
         };
         let mut wishes: Vec<(usize, Wish)> = brief.asks.iter().enumerate().filter_map(wish).collect();
@@ -194,7 +193,8 @@ impl<'a> Claims<'a> {
 /// Gives rooms that somebody asked for and that no wish took to one for such rooms: three bedrooms where two were asked for are three.
 fn take_rest<'a>(wishes: &mut [(usize, Wish<'a>)], all: &[&'a GraphRoom], taken: &mut [bool]) {
     for (i, room) in all.iter().enumerate().filter(|(_, room)| room.requested) {
-        let suits = |wish: &Wish| matches!(wish.likeness[i], Some(Likeness::Named | Likeness::NamedOnly | Likeness::Type));
+        let suits =
+            |wish: &Wish| matches!(wish.likeness[i], Some(Likeness::Named | Likeness::NamedOnly | Likeness::Type));
         let open = |wish: &Wish| suits(wish) && wish.asked.count.bound == Bound::AtLeast;
         if taken[i] {
             continue;
@@ -211,11 +211,15 @@ fn take_rest<'a>(wishes: &mut [(usize, Wish<'a>)], all: &[&'a GraphRoom], taken:
 fn share<'a>(brief: &Brief, wishes: &mut [(usize, Wish<'a>)], all: &[&'a GraphRoom]) {
     for i in 0..wishes.len() {
         let (_, wish) = &wishes[i];
-        if !wish.rooms.is_empty() || wish.asked.count.bound != Bound::AtLeast || wish.asked.among {
+        let open = wish.asked.count.bound == Bound::AtLeast || is_summary(brief, wish.ask);
+        if !wish.rooms.is_empty() || !open || wish.asked.among {
             continue;
         }
-        let likes = |room: &GraphRoom| all.iter().position(|r| r.id == room.id).is_some_and(|at| wish.likeness[at].is_some());
-        let same = |other: &Wish| other.rooms.iter().all(|r| likes(r)) && is_again(brief, (other.ask, other.asked), (wish.ask, wish.asked));
+        let likes =
+            |room: &GraphRoom| all.iter().position(|r| r.id == room.id).is_some_and(|at| wish.likeness[at].is_some());
+        let same = |other: &Wish| {
+            other.rooms.iter().all(|r| likes(r)) && is_again(brief, (other.ask, other.asked), (wish.ask, wish.asked))
+        };
         let first = wishes.iter().find(|(_, w)| !w.rooms.is_empty() && same(w));
         if let Some(rooms) = first.map(|(_, w)| w.rooms.clone()) {
             wishes[i].1.rooms = rooms;
@@ -245,10 +249,10 @@ fn countable<'a>(world: &'a World, domain: &Domain) -> Vec<&'a GraphRoom> {
 }
 
 /// Returns true where a wish for rooms speaks of what another named, and asks for nothing more: by the same name without a word more, in
-/// another sentence, or as a part of what is said of something else.
+/// another sentence, as a part of what is said of something else, or where one of them sums up what there is.
 fn is_again(brief: &Brief, (first, named): (&Ask, &RoomsAsk), (again, asked): (&Ask, &RoomsAsk)) -> bool {
     let plain = RoomsAsk { room: named.room.clone(), ..RoomsAsk::default() };
-    if *asked == plain {
+    if *asked == plain || is_summary(brief, first) || is_summary(brief, again) {
         return true;
     }
     let (Some(a), Some(b)) = (first.words.last(), again.words.last()) else { return false };
@@ -262,6 +266,12 @@ fn is_again(brief: &Brief, (first, named): (&Ask, &RoomsAsk), (again, asked): (&
     let tells = |ask: &&Ask| matches!(ask.fact, Fact::Relation(_) | Fact::Robots(_) | Fact::Forbidden(_));
     let around = |ask: &Ask| ask.words.iter().any(|w| w.start <= b.start && b.end <= w.end);
     (0..between.len()).any(is_end) || brief.asks.iter().filter(tells).any(around)
+}
+
+/// Returns true for words that several wishes for rooms share: "5 BHK" and "3-room flat" sum up what may be named one by one.
+fn is_summary(brief: &Brief, ask: &Ask) -> bool {
+    let same = |other: &&Ask| matches!(&other.fact, Fact::Rooms(r) if !r.among) && other.words == ask.words;
+    !ask.words.is_empty() && brief.asks.iter().filter(same).count() > 1
 }
 
 /// Returns the storey that a fact is said of by words that it shares with rooms of which the storey is known: "upstairs ... a bath"

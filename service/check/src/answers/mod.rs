@@ -124,9 +124,7 @@ impl<'a> Asked<'a> {
         let mut found = self.find(at, ask).and(self.unread_part(ask));
         // what is there and of another kind or not wholly read is not what a conflict is about
         let is_short = found.fate == Fate::LeftOut || found.fate == Fate::Substituted && found.asked.is_some();
-        if is_short
-            && let Some(message) = self.told_of(&ask.fact)
-        {
+        if is_short && let Some(message) = self.told_of(&ask.fact) {
             found.fate = Fate::Contradicted;
             found.reason = if found.reason.is_empty() { message } else { format!("{}; {message}", found.reason) };
         }
@@ -164,17 +162,11 @@ impl<'a> Asked<'a> {
 
     /// Returns what of a wish for something was not read: a word that touches its own says what it is to be, a "massage" chair.
     fn unread_part(&self, ask: &Ask) -> Finding {
-        let is_thing =
-            matches!(ask.fact, Fact::Rooms(_) | Fact::Objects(_) | Fact::Capacity(_) | Fact::Robots(_));
+        let is_thing = matches!(ask.fact, Fact::Rooms(_) | Fact::Objects(_) | Fact::Capacity(_) | Fact::Robots(_));
         let Some(own) = ask.words.last().filter(|_| is_thing) else { return Finding::honored(Vec::new()) };
         let own = named_in(own, &ask.fact);
-        let unread: Vec<String> = self
-            .brief
-            .not_understood
-            .iter()
-            .filter(|w| self.touch(&own, w))
-            .map(|w| format!("`{}`", w.text))
-            .collect();
+        let unread: Vec<String> =
+            self.brief.not_understood.iter().filter(|w| self.touch(&own, w)).map(|w| format!("`{}`", w.text)).collect();
         let reason = || format!("{} was not understood", unread.join(" and "));
         Finding::when(unread.is_empty(), Vec::new(), reason).or_near()
     }
@@ -222,7 +214,8 @@ fn named_in(words: &PromptWords, fact: &Fact) -> PromptWords {
 /// Returns true for a message with the name or the id of something in it.
 fn names(message: &str, subject: &Subject) -> bool {
     let message = message.to_lowercase();
-    let is_telling = |word: &str| word.chars().count() >= TELLING_LETTERS || word.chars().nth(1).is_some() && !word.is_ascii();
+    let is_telling =
+        |word: &str| word.chars().count() >= TELLING_LETTERS || word.chars().nth(1).is_some() && !word.is_ascii();
     let id = subject.id.clone().unwrap_or_default();
     let words = [subject.name.to_lowercase(), id.replace('_', " "), id];
     let ends = |c: Option<char>| c.is_none_or(|c| !c.is_alphanumeric());

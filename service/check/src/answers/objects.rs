@@ -80,8 +80,10 @@ impl<'a> Asked<'a> {
     /// Returns the objects of another kind that stand where one was asked for: a single bed in the place of a double one, a sofa in
     /// that of a sofa bed.
     fn like(&self, asked: &ObjectsAsk, place: &Place) -> Vec<&'a Placement> {
-        let Some(id) = asked.object.id.as_deref().filter(|_| place.named) else { return Vec::new() };
-        let is_like = |other: &str| head_of(other) == head_of(id) || id.split('_').any(|part| part == other);
+        let Some(id) = asked.object.id.as_deref() else { return Vec::new() };
+        let of_it = |other: &str| other.strip_prefix(id).is_some_and(|rest| rest.starts_with('_'));
+        let instead = |other: &str| head_of(other) == head_of(id) || id.split('_').any(|part| part == other);
+        let is_like = |other: &str| of_it(other) || place.named && instead(other);
         let placements = self.world.placements.placements.iter();
         placements.filter(|p| place.has(p) && is_like(&p.object)).collect()
     }
@@ -104,7 +106,8 @@ impl<'a> Asked<'a> {
         let own = |p: &&Placement| {
             let room = self.world.scene_graph.room(&p.room_id)?;
             let kind = self.domain.room_type_or_lent(&room.room_type)?;
-            let became = room.requested && !self.claims.is_taken(&room.id) && has_word(&kind.keywords, &asked.object.name);
+            let became =
+                room.requested && !self.claims.is_taken(&room.id) && has_word(&kind.keywords, &asked.object.name);
             became.then_some(room.name.as_str())
         };
         let rooms: Vec<&str> = there.iter().map_while(own).collect();

@@ -35,8 +35,7 @@ impl<'a> Asked<'a> {
         if let Some(misfit) = of_kind.iter().find(|r| r.misfit) {
             out = out.and(Finding::of(Fate::Substituted, format!("the {} robot does not fit everywhere", misfit.kind)));
         }
-        let tasks: Vec<&RobotTask> =
-            self.world.scenario.robots.iter().filter(|t| is_meant(&t.robot)).collect();
+        let tasks: Vec<&RobotTask> = self.world.scenario.robots.iter().filter(|t| is_meant(&t.robot)).collect();
         for task in &asked.tasks {
             out = out.and(if RESTS.contains(&task.verb.as_str()) {
                 self.rests(task, &tasks)
@@ -87,8 +86,9 @@ impl<'a> Asked<'a> {
     fn task(&self, ask: &Ask, asked: &AskedTask, tasks: &[&'a RobotTask]) -> Finding {
         let jobs = self.jobs_of(ask, tasks);
         let goals = tasks.iter().flat_map(|t| &t.goals).filter_map(|id| self.room_of(id));
-        let visited: BTreeSet<&str> =
-            goals.chain(jobs.iter().flat_map(|j| j.from.iter().chain(&j.to)).filter_map(|id| self.room_of(id))).collect();
+        let visited: BTreeSet<&str> = goals
+            .chain(jobs.iter().flat_map(|j| j.from.iter().chain(&j.to)).filter_map(|id| self.room_of(id)))
+            .collect();
         let mut lacking: Vec<String> = Vec::new();
         for place in asked.to.iter().chain(&asked.from) {
             let rooms = self.rooms_of_place(place);

@@ -88,7 +88,8 @@ impl<'a> Asked<'a> {
         };
         let is_empty = |r: &&GraphRoom| self.domain.room_type_or_lent(&r.room_type).is_none() && !stands(r);
         let empty: Vec<&GraphRoom> = there.iter().copied().filter(|r| is_empty(r)).collect();
-        let reason = || format!("no such room is known here: {} has its name and its light, and is empty", names_of(&empty));
+        let reason =
+            || format!("no such room is known here: {} has its name and its light, and is empty", names_of(&empty));
         Finding::when(empty.is_empty(), Vec::new(), reason).or_near()
     }
 
@@ -194,7 +195,8 @@ impl<'a> Asked<'a> {
         let holds = |r: &&GraphRoom| things.iter().any(|p| p.room_id == r.id);
         let many = FOR_SO_MANY.iter().find(|(word, _)| *word == attribute).map(|(_, n)| *n);
         let peopled = |r: &&GraphRoom| many.is_some() && self.people_of(r) == many;
-        let missing: Vec<&GraphRoom> = rooms.iter().filter(|r| !named(r) && !holds(r) && !peopled(r)).copied().collect();
+        let missing: Vec<&GraphRoom> =
+            rooms.iter().filter(|r| !named(r) && !holds(r) && !peopled(r)).copied().collect();
         let word = attribute.replace('_', " ");
         let reason = || match many.zip(missing.first().and_then(|r| self.people_of(r))) {
             Some((_, n)) => format!("not {word}: {} is for {n}", names_of(&missing[..1])),

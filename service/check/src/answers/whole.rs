@@ -72,7 +72,8 @@ impl Asked<'_> {
             let toilets: Vec<&GraphRoom> = graph.rooms.iter().filter(is_toilet).collect();
             let own = toilets.is_empty() || toilets.iter().any(|r| self.is_accessible(r));
             let planned = Finding::when(graph.accessible, Vec::new(), || "the plan is not made for wheelchairs".into());
-            return planned.and(Finding::when(own, Vec::new(), || "no toilet is made for wheelchairs".into()).or_near());
+            return planned
+                .and(Finding::when(own, Vec::new(), || "no toilet is made for wheelchairs".into()).or_near());
         };
         let rooms = self.rooms_meant(ask, room);
         let not: Vec<&GraphRoom> = rooms.iter().filter(|r| !self.is_accessible(r)).copied().collect();
@@ -90,8 +91,7 @@ impl Asked<'_> {
             // "no private offices, 30 desks in the open plan"
             let wanted = self.named_elsewhere(room);
             let found = self.rooms_called(room);
-            let found: Vec<&GraphRoom> =
-                found.into_iter().filter(|r| !wanted.contains(r.room_type.as_str())).collect();
+            let found: Vec<&GraphRoom> = found.into_iter().filter(|r| !wanted.contains(r.room_type.as_str())).collect();
             ids.extend(ids_of(&found));
             names.extend(found.iter().map(|r| r.name.clone()));
         }

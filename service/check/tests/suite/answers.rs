@@ -248,12 +248,23 @@ fn named(id: &str, name: &str) -> Fact {
 #[test]
 fn a_room_answers_one_wish_unless_it_is_named_again() {
     let office = &SAMPLES[OFFICE];
-    let two = [("a podcast room", named("meeting_room", "podcast room")), ("a photo room", named("meeting_room", "photo room"))];
+    let two = [
+        ("a podcast room", named("meeting_room", "podcast room")),
+        ("a photo room", named("meeting_room", "photo room")),
+    ];
     let asked = worded("a podcast room and a photo room", &two, &[]);
     assert_eq!(fates(office, &office.world, asked), [Fate::Honored, Fate::LeftOut], "one room for two");
-    let alike = [("a meeting room", named("meeting_room", "room")), ("but no dust in the room", named("meeting_room", "room"))];
+    let alike =
+        [("a meeting room", named("meeting_room", "room")), ("but no dust in the room", named("meeting_room", "room"))];
     let same = worded("a meeting room, but no dust in the room", &alike, &[]);
     assert_eq!(fates(office, &office.world, same), [Fate::Honored, Fate::Honored], "the same name again");
+    let sums = [
+        ("3 LDK", named("meeting_room", "3 LDK")),
+        ("3 LDK", named("reception", "3 LDK")),
+        ("with a quiet room", named("meeting_room", "quiet room")),
+    ];
+    let summed = fates(office, &office.world, worded("3 LDK with a quiet room", &sums, &[]));
+    assert_eq!([summed[0], summed[2]], [Fate::Honored, Fate::Honored], "what is summed up is named once more");
     let again = worded("a podcast room. Lights in a photo room", &two, &[]);
     assert_eq!(fates(office, &office.world, again), [Fate::Honored, Fate::Honored], "another sentence speaks of it");
 }
@@ -262,7 +273,8 @@ fn a_room_answers_one_wish_unless_it_is_named_again() {
 fn what_was_not_read_of_a_thing_is_not_there() {
     let flat = &SAMPLES[FLAT];
     let bed = Fact::Objects(ObjectsAsk { object: Subject::known("double_bed", "bed"), ..ObjectsAsk::default() });
-    let asked = |prompt: &str, unread: &[&str]| fates(flat, &flat.world, worded(prompt, &[("bed", bed.clone())], unread));
+    let asked =
+        |prompt: &str, unread: &[&str]| fates(flat, &flat.world, worded(prompt, &[("bed", bed.clone())], unread));
     assert_eq!(asked("a heated bed", &["heated"]), [Fate::Substituted]);
     assert_eq!(asked("a heated house, a bed", &["heated"]), [Fate::Honored]);
 }
@@ -286,11 +298,8 @@ fn a_room_that_nobody_knows_and_nothing_stands_in_is_only_its_name() {
 fn each_of_several_rooms_has_what_they_are_asked_for_with() {
     let flat = &SAMPLES[FLAT];
     let is_wardrobe = |object: &str| object.ends_with("wardrobe");
-    let wardrobe = Fact::Objects(ObjectsAsk {
-        object: room("wardrobe"),
-        room: Some(room("bedroom")),
-        ..ObjectsAsk::default()
-    });
+    let wardrobe =
+        Fact::Objects(ObjectsAsk { object: room("wardrobe"), room: Some(room("bedroom")), ..ObjectsAsk::default() });
     let facts = [("two bedrooms", rooms("bedroom", AskedCount::exactly(2))), ("wardrobe", wardrobe)];
     let asked = |world: &World| fates(flat, world, worded("two bedrooms with wardrobe", &facts, &[]))[1];
     let mut world = flat.world.clone();
@@ -324,7 +333,8 @@ fn a_stand_for_a_thing_is_not_the_thing() {
     let flat = &SAMPLES[FLAT];
     let mut world = flat.world.clone();
     assert!(world.placements.placements.iter().any(|p| p.object == "tv_stand"), "the flat has one");
-    let none = Fact::Forbidden(ForbiddenAsk { object: Some(Subject::known("tv", "television")), ..ForbiddenAsk::default() });
+    let none =
+        Fact::Forbidden(ForbiddenAsk { object: Some(Subject::known("tv", "television")), ..ForbiddenAsk::default() });
     let asked = |world: &World| fates(flat, world, worded("no television", &[("television", none.clone())], &[]))[0];
     assert_eq!(asked(&world), Fate::LeftOut);
     world.placements.placements.retain(|p| p.object != "tv");
@@ -365,5 +375,9 @@ fn a_robot_rests_where_it_was_said_and_stays_out_where_it_was_said() {
     };
     assert_eq!(answer(warehouse, robots(vec![resting(&room_of(&dock))], Vec::new())).fate, Fate::Honored);
     assert_eq!(answer(warehouse, robots(vec![resting("break_room")], Vec::new())).fate, Fate::Substituted);
-    assert_eq!(answer(warehouse, robots(Vec::new(), vec![room(&goal)])).fate, Fate::LeftOut, "it drives through {goal}");
+    assert_eq!(
+        answer(warehouse, robots(Vec::new(), vec![room(&goal)])).fate,
+        Fate::LeftOut,
+        "it drives through {goal}"
+    );
 }

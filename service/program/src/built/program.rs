@@ -227,8 +227,7 @@ pub(crate) fn follow_rules<'a>(
 /// that no list of rooms names.
 fn state_additions(reading: &mut Reading, rooms: &[Planned]) {
     let listed: BTreeSet<&str> = rooms.iter().filter(|r| r.requested).map(|r| r.room_type.as_str()).collect();
-    let is_change =
-        |room: &&Planned| listed.len() >= LEAST_LISTED && !reading.wet.has_toilet(room.kind);
+    let is_change = |room: &&Planned| listed.len() >= LEAST_LISTED && !reading.wet.has_toilet(room.kind);
     let added = rooms.iter().filter(|r| !r.requested);
     let (changes, usual): (Vec<&Planned>, Vec<&Planned>) = added.partition(is_change);
     let note = |rooms: &[&Planned]| {
