@@ -9,13 +9,14 @@ use d3dgen_model::world::World;
 
 /// Factor by which the floor of a room grows that lacks an object.
 const MORE_FLOOR: f64 = 1.35;
-/// Most that the rooms below grow for a storey that juts out, as a factor.
+/// How much more floor the rooms below one that juts out get than juts out, and the most, as factors: not all of it comes to lie there.
+const BELOW: f64 = 1.5;
 const MOST_BELOW: f64 = 1.3;
 
 /// Returns the graph with what its broken rules ask for; `None` where there is nothing of that kind.
 pub(crate) fn mended(graph: &SceneGraph, report: &Report) -> Option<SceneGraph> {
     let mut out = graph.clone();
-    let before = out.conflicts.len();
+    let mut changed = false;
     for broken in violations(report) {
         let note = match broken.code.as_str() {
             "private_passage" => own_door(&mut out, &broken.subject),
@@ -23,9 +24,11 @@ pub(crate) fn mended(graph: &SceneGraph, report: &Report) -> Option<SceneGraph> 
             "storey_in_the_air" => more_below(&mut out, broken),
             _ => None,
         };
-        out.conflicts.extend(note);
+        changed |= note.is_some();
+        // a storey that was not large enough yet grows again
+        out.conflicts.extend(note.filter(|n| !graph.conflicts.contains(n)));
     }
-    (out.conflicts.len() > before).then_some(out)
+    changed.then_some(out)
 }
 
 /// Returns the graph without the rooms of the prompt where the rules of a world are broken, and what hangs on them; `None` where
@@ -88,7 +91,7 @@ fn more_floor(graph: &mut SceneGraph, id: &str) -> Option<Note> {
 fn more_below(graph: &mut SceneGraph, broken: &Violation) -> Option<Note> {
     let level: i32 = broken.subject.rsplit(' ').next()?.parse().ok()?;
     let below = if level > 0 { level - 1 } else { level + 1 };
-    let factor = (1.0 + broken.measured?).min(MOST_BELOW);
+    let factor = (1.0 + BELOW * broken.measured?).min(MOST_BELOW);
     let mut rooms = graph.rooms.iter_mut().filter(|r| r.level == below && !r.circulation && !r.locked).peekable();
     rooms.peek()?;
     rooms.for_each(|room| grow(room, factor));
@@ -165,8 +168,8 @@ mod tests {
         let larger = mend("object_missing", "bedroom_1", None).expect("it may grow");
         let area = |g: &SceneGraph| g.room("bedroom_1").expect("it is there").target_area_m2;
         assert!(area(&larger) > 1.3 * area(graph));
-        let below = mend("storey_in_the_air", "level 1", Some(0.2)).expect("there is a storey below");
-        assert!((area(&below) / area(graph) - 1.2).abs() < 0.02);
+        let below = mend("storey_in_the_air", "level 1", Some(0.1)).expect("there is a storey below");
+        assert!((area(&below) / area(graph) - 1.15).abs() < 0.02);
         for next in [door, larger, below] {
             assert_eq!(next.check(), vec![]);
             assert_eq!(next.conflicts.len(), graph.conflicts.len() + 1);
