@@ -43,7 +43,7 @@ impl KeptModels for Kept<'_> {
 ///
 /// # Errors
 /// `INVALID_ARGUMENT` for a format that is none, and for names in the world that lead out of its folder.
-pub(super) fn files(
+pub(crate) fn files(
     core: &Core,
     world: &World,
     formats: &[String],
