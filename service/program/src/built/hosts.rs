@@ -106,17 +106,9 @@ pub(super) fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         // "on the second floor a terrace": not that of the living room below
         let elsewhere = |h: usize| storeys[i].is_some_and(|at| storeys[h].is_some_and(|other| other != at));
         let hosted = room.kind.access == Access::Host;
-        // the closet of a suite is entered from its bedroom, not through the bathroom that the suite has too
-        let through_bath = |p: &&Pair| {
-            let bath = domain.room_type(&p.b).is_some_and(|k| k.access == Access::Host && k.wet);
-            hosted && bath && !room.kind.hosts.contains(&p.b)
-        };
-        let belongs = pairs.iter().find(|p| p.a == room.room_type).filter(|p| !through_bath(p));
-        // "management with boardroom": nobody meets behind somebody's office
-        let shared = room.kind.privacy != Privacy::Private && room.kind.zone == Zone::Day && !hosted;
-        let through = |p: &&Pair| domain.room_type(&p.b).is_some_and(|k| k.privacy == Privacy::Private);
-        let works = is_office(reading.program);
-        let belongs = belongs.filter(|p| !(works && shared && through(p)));
+        // "management with boardroom": nobody meets behind somebody's office; a closet is not entered through a bathroom
+        let through = |p: &&Pair| domain.room_type(&p.b).is_some_and(|host| !room.kind.may_hang_on(host));
+        let belongs = pairs.iter().find(|p| p.a == room.room_type).filter(|p| !through(p));
         // "lobby with counters": the public goes on from one to the other, those who work there do not
         let belongs = belongs.filter(|p| !are_public(reading, p));
         if !hosted && belongs.is_none() {
@@ -186,7 +178,10 @@ fn behind_lock(domain: &Domain, rooms: &[Planned], lock: usize, pair: &Pair) -> 
     let before = |t: &RoomType| t.access == Access::Host && t.hosts.contains(&kind.id) && larger(t);
     let locks = matches!(kind.zone, Zone::Service | Zone::Circulation) && kind.access != Access::Host;
     let free = |r: &Planned| {
-        r.room_type == pair.b && r.host.is_none() && r.kind.access != Access::Host && (larger(r.kind) || r.name.is_some())
+        r.room_type == pair.b
+            && r.host.is_none()
+            && r.kind.access != Access::Host
+            && (larger(r.kind) || r.name.is_some())
     };
     if !locks || !domain.room_types.iter().any(before) {
         return None;
