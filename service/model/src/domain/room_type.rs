@@ -208,13 +208,14 @@ pub enum RobotUse {
 }
 
 impl RoomType {
-    /// Returns true where a room of this type may be entered through one of another type alone, because it is given to that one:
-    /// its en suite, its closet, its balcony. Others would go through a private room, and nobody through a bathroom, unless the type
-    /// itself names it as a host.
+    /// Returns true where a room of this type may be entered through one of another type alone, because it is given to that one: its
+    /// en suite, its closet, its balcony, and what lies behind its anteroom. Nobody goes to the preparation through the operating
+    /// room, which is private, nor anywhere through a bathroom.
     pub fn may_hang_on(&self, host: &Self) -> bool {
-        let by_type = self.access == Access::Host && self.hosts.contains(&host.id);
-        let own = (self.wet || self.privacy == Privacy::Private) && !host.wet;
-        by_type || host.privacy != Privacy::Private || own
+        let by_type = |inner: &Self, outer: &Self| inner.access == Access::Host && inner.hosts.contains(&outer.id);
+        let closet = self.zone == Zone::Night && self.daylight == Daylight::None;
+        let own = (self.wet || closet || self.zone == Zone::Outdoor) && !host.wet;
+        by_type(self, host) || by_type(host, self) || host.privacy != Privacy::Private || own
     }
 
     pub(super) fn check(&self, path: &str, domain: &Domain, problems: &mut Vec<Problem>) {
