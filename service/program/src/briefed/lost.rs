@@ -147,18 +147,32 @@ fn restore_rooms(reading: &mut Reading, brief: &Brief, registry: &Registry) {
     }
 }
 
-/// Gives rooms of which the reader of words knew no more than their name the type that the brief knows them by.
+/// Gives rooms of which the reader of words knew no more than their name, or only the end of it, the type that the brief knows
+/// them by: a "committal hall" is no hall like another.
 fn retype(reading: &mut Reading, brief: &Brief, ask: &Ask, asked: &RoomsAsk) {
     let domain = reading.domain;
     let known =
         asked.room.id.as_ref().filter(|id| domain.room_type_or_lent(id).is_some_and(|k| k.id != GENERIC_ROOM_TYPE));
     let Some((id, bytes)) = known.zip(bytes_of(brief, ask, &asked.room.name)) else { return };
     let here = |u: &&Understood| u.bytes.start < bytes.end && bytes.start < u.bytes.end;
-    let unknown = |id: &&String| domain.room_type_or_lent(id).is_none();
-    let mut types = reading.understood.iter().filter(here).filter_map(|u| u.room_type.as_ref());
-    let Some(named) = types.find(unknown).cloned() else { return };
+    let end_only = |u: &&Understood| bytes.start < u.bytes.start && u.bytes.end == bytes.end;
+    let less = |u: &&Understood| match &u.room_type {
+        Some(read) => read != id && (domain.room_type_or_lent(read).is_none() || end_only(u)),
+        None => false,
+    };
+    let Some(named) = reading.understood.iter().filter(here).find(less).and_then(|u| u.room_type.clone()) else {
+        return;
+    };
     let Some(at) = reading.wishes.wishes.iter().position(|w| w.room_type == named) else { return };
-    let mut wish = reading.wishes.wishes.remove(at);
+    let mut wish = reading.wishes.wishes[at].clone();
+    // "a hall and a committal hall": one of the two
+    let rest = wish.count.saturating_sub(asked.count.n);
+    if rest > 0 {
+        wish.count -= rest;
+        reading.wishes.wishes[at].count = rest;
+    } else {
+        reading.wishes.wishes.remove(at);
+    }
     match reading.wishes.wishes.iter_mut().find(|w| &w.room_type == id) {
         Some(same) => same.count += wish.count,
         None => {
