@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_model::brief::Brief;
+use d3dgen_model::brief::{Ask, Brief, Fact};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
 use d3dgen_model::stage::Error;
@@ -52,7 +52,7 @@ pub fn rooms(request: &Request, registry: &Registry) -> Result<(SceneGraph, Opti
         return Ok((scene_graph::generate(request, registry)?, None));
     };
     let mut graph = rooms_of_prompt(&brief, request, registry)?;
-    graph.assumptions.extend(likely_rooms(&told_by_a_part, &graph));
+    graph.assumptions.extend(likely_rooms(&brief, &told_by_a_part, &graph));
     Ok((graph, Some(brief)))
 }
 
@@ -71,13 +71,13 @@ fn rooms_of_prompt(brief: &Brief, request: &Request, registry: &Registry) -> Res
 }
 
 /// Says of rooms whose names no lexicon has as what they were furnished, by a part of their names.
-fn likely_rooms(told: &BTreeMap<String, String>, graph: &SceneGraph) -> Option<Note> {
-    let planned = |id: &String| graph.rooms.iter().any(|r| &r.room_type == id);
-    let all: Vec<String> = told
-        .iter()
-        .filter(|(_, id)| planned(id))
-        .map(|(name, id)| format!("`{name}` as a {}", id.replace('_', " ")))
-        .collect();
+fn likely_rooms(brief: &Brief, told: &BTreeMap<String, String>, graph: &SceneGraph) -> Option<Note> {
+    let asked = |(name, id): &(&String, &String)| {
+        let same = |a: &Ask| matches!(&a.fact, Fact::Rooms(r) if &r.room.name == *name && r.room.id.as_ref() == Some(*id));
+        brief.asks.iter().any(same) && graph.rooms.iter().any(|r| &r.room_type == *id)
+    };
+    let all: Vec<String> =
+        told.iter().filter(asked).map(|(name, id)| format!("`{name}` ({})", id.replace('_', " "))).collect();
     let message = format!("no room is known by these names; furnished by a part of them: {}", all.join(", "));
     (!all.is_empty()).then(|| Note::new("room_likely", message))
 }
