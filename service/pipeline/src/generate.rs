@@ -459,7 +459,7 @@ fn with_area(graph: &SceneGraph, plan: &Floorplan) -> SceneGraph {
 }
 
 /// Puts a world together of a plan and its furniture, and judges it by the rules and by the brief that it answers to; the
-/// scenario goes on under the plan's seed.
+/// scenario goes on under the plan's seed, with what is locked in one that is `kept`.
 ///
 /// # Errors
 /// As [`scenario::generate`].
@@ -470,9 +470,10 @@ pub fn finish(
     domain: &Domain,
     retrieved: &Retrieval,
     brief: Option<Brief>,
+    kept: Option<&Scenario>,
 ) -> Result<(World, Report), Error> {
     let reseeded = SceneGraph { seed: plan.seed, ..graph.clone() };
-    let wishes = scenario::Wishes { brief: brief.as_ref(), ..Default::default() };
+    let wishes = scenario::Wishes { brief: brief.as_ref(), kept, ..Default::default() };
     let scenario = scenario::generate_as(&reseeded, &plan, &placements, domain, &wishes)?;
     let mut world = World { brief, ..world::assemble(name, graph, plan, placements, scenario) };
     let report = world::check(&world, domain, retrieved);

@@ -8,6 +8,7 @@ mod corridors;
 mod details;
 mod edit;
 mod edit_storeys;
+mod edit_tasks;
 mod fleets;
 mod forms;
 mod homes;
