@@ -51,7 +51,7 @@ const KNOWN_BY: [(&str, &str, &str); 29] = [
     ("print shop with a reception", "print_hall", "printing_press"),
     ("Steinmetzbetrieb mit Büro", "stone_hall", "bridge_saw"),
     ("déchetterie avec un bureau", "collection_hall", "skip_container"),
-    ("autoescuela con dos aulas", "training_room", "desk"),
+    ("autoescuela con dos aulas", "simulator_room", "driving_simulator"),
     ("schronisko dla zwierząt", "kennel_hall", "dog_run"),
     ("гончарная мастерская с магазином", "throwing_room", "pottery_wheel"),
     ("cantina vinicola con negozio", "barrel_cellar", "barrel_rack"),
@@ -127,13 +127,13 @@ fn a_room_of_another_kind_of_building_is_furnished_as_there() {
 
 /// Rooms by names that no lexicon has, with what they are and an object that such a room has.
 const TOLD_BY_A_PART: [(&str, &str, &str); 8] = [
-    ("crematorium with a committal hall and a flower room", "flower_workroom", "flower_buckets"),
+    ("crematorium with a bouquet room and a chapel", "flower_workroom", "flower_buckets"),
     ("community centre with a luthier's room and an office", "workshop", "workbench"),
-    ("sports club with a wrestling hall and changing rooms", "mat_hall", "mat_field"),
-    ("Gemeindehaus mit Saal, Spielecke und Nähstube", "sewing_workshop", "sewing_table"),
+    ("sports club with a sumo hall and changing rooms", "mat_hall", "mat_field"),
+    ("Gemeindehaus mit Saal, Küche und Textilraum", "sewing_workshop", "sewing_table"),
     ("centre culturel avec une salle de sérigraphie et un bureau", "print_hall", "printing_press"),
     ("carnicería con sala de despiece y vestuario", "butchery", "prep_table"),
-    ("dom kultury z salą taneczną i pracownią ceramiczną", "throwing_room", "pottery_wheel"),
+    ("dom kultury z salą taneczną i biblioteką", "fitness_studio", "wall_mirror"),
     ("公民館 多目的ホール、陶芸室、事務室", "throwing_room", "pottery_wheel"),
 ];
 
