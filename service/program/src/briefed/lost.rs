@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use d3dgen_model::brief::{Ask, Bound, Brief, CapacityAsk, Fact, PlaceKind, RoomsAsk, SiteKind};
-use d3dgen_model::domain::GENERIC_ROOM_TYPE;
+use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
 use d3dgen_model::offer;
 use d3dgen_model::scene_graph::Note;
 use d3dgen_plugins::Registry;
@@ -155,9 +155,15 @@ fn retype(reading: &mut Reading, brief: &Brief, ask: &Ask, asked: &RoomsAsk) {
         asked.room.id.as_ref().filter(|id| domain.room_type_or_lent(id).is_some_and(|k| k.id != GENERIC_ROOM_TYPE));
     let Some((id, bytes)) = known.zip(bytes_of(brief, ask, &asked.room.name)) else { return };
     let here = |u: &&Understood| u.bytes.start < bytes.end && bytes.start < u.bytes.end;
-    let end_only = |u: &&Understood| bytes.start < u.bytes.start && u.bytes.end == bytes.end;
+    // neither type is called so: the reader of words knew the end of the name, the brief another part of it
+    let name = asked.room.name.to_lowercase();
+    let name = name.trim_end_matches('s');
+    let end_only = |read: &str| {
+        words_for(domain, read).all(|word| word != name) && words_for(domain, id).all(|word| !name.ends_with(word))
+    };
     let less = |u: &&Understood| match &u.room_type {
-        Some(read) => read != id && (domain.room_type_or_lent(read).is_none() || end_only(u)),
+        Some(read) if domain.room_type_or_lent(read).is_none() => read != id,
+        Some(read) => read != id && u.bytes.end == bytes.end && end_only(read),
         None => false,
     };
     let Some(named) = reading.understood.iter().filter(here).find(less).and_then(|u| u.room_type.clone()) else {
@@ -188,6 +194,12 @@ fn retype(reading: &mut Reading, brief: &Brief, ask: &Ask, asked: &RoomsAsk) {
     });
     let name = capital(&asked.room.name);
     reading.names.push(Called { span: Span { start: 0, end: 0 }, room_type: id.clone(), name, count: asked.count.n });
+}
+
+/// Returns the words of a domain for a type of room, in the singular.
+fn words_for<'d>(domain: &'d Domain, id: &str) -> impl Iterator<Item = &'d str> {
+    let kind = domain.room_type_or_lent(id).into_iter();
+    kind.flat_map(|kind| kind.keywords.values().flatten()).map(|word| word.trim_end_matches('s'))
 }
 
 /// Adds how rooms that were `added` lie to others.
