@@ -5,7 +5,7 @@ use d3dgen_model::domain::{Adjacency, AdjacencyRelation};
 use d3dgen_model::scene_graph::{BY_CIRCULATION, BY_HOST, BY_PROMPT, BY_STYLE, Connector, GraphEdge, GraphRoom, Note};
 use d3dgen_model::style::LayoutStyle;
 
-use super::hosts::are_public;
+use super::hosts::{are_public, is_beside};
 use super::rooms;
 use crate::built::growth::way_through;
 use crate::built::planned::Planned;
@@ -173,8 +173,8 @@ impl Web {
                 continue;
             }
             if pair.belongs {
-                let pairs =
-                    if are_public(reading, &pair) { spread(rooms, &from, &to, Spread::Each) } else { Vec::new() };
+                let beside = are_public(reading, &pair) || is_beside(reading, &pair);
+                let pairs = if beside { spread(rooms, &from, &to, Spread::Each) } else { Vec::new() };
                 for (i, j) in pairs {
                     if !self.has_apart(&rooms[i].id, &rooms[j].id) {
                         self.put(rooms, (i, j), Connector::Door, false, BY_PROMPT);
