@@ -85,7 +85,7 @@ fn tells(words: &[&str], part: &str) -> bool {
     let spaced = part.chars().all(|c| c.is_ascii() || ('\u{400}'..'\u{530}').contains(&c));
     match letters {
         _ if !spaced => words.iter().any(|word| word.contains(part)),
-        0..=WHOLE_WORD => words.iter().any(|word| *word == part),
+        0..=WHOLE_WORD => words.contains(&part),
         n if n >= WITHIN_A_WORD => words.iter().any(|word| word.contains(part)),
         _ => words.iter().any(|word| word.starts_with(part)),
     }

@@ -73,7 +73,8 @@ fn rooms_of_prompt(brief: &Brief, request: &Request, registry: &Registry) -> Res
 /// Says of rooms whose names no lexicon has as what they were furnished, by a part of their names.
 fn likely_rooms(brief: &Brief, told: &BTreeMap<String, String>, graph: &SceneGraph) -> Option<Note> {
     let asked = |(name, id): &(&String, &String)| {
-        let same = |a: &Ask| matches!(&a.fact, Fact::Rooms(r) if &r.room.name == *name && r.room.id.as_ref() == Some(*id));
+        let same =
+            |a: &Ask| matches!(&a.fact, Fact::Rooms(r) if &r.room.name == *name && r.room.id.as_ref() == Some(*id));
         brief.asks.iter().any(same) && graph.rooms.iter().any(|r| &r.room_type == *id)
     };
     let all: Vec<String> =

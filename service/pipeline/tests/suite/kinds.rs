@@ -150,7 +150,10 @@ fn a_room_that_no_lexicon_has_is_furnished_by_a_part_of_its_name() {
 
 #[test]
 fn a_room_that_tells_nothing_has_a_table_chairs_and_cupboards() {
-    for prompt in ["museum with a lobby, two exhibition rooms and a flumbarium", "office with a flumbarium, two offices and a lobby"] {
+    for prompt in [
+        "museum with a lobby, two exhibition rooms and a flumbarium",
+        "office with a flumbarium, two offices and a lobby",
+    ] {
         for world in worlds(prompt, SEEDS) {
             let room = world.floorplan.rooms.iter().find(|r| r.room_type == "flumbarium").expect("it is asked for");
             assert!(in_room(&world, &room.room_id).count() >= 5, "{prompt}: the room is bare");
