@@ -199,7 +199,8 @@ fn retype(reading: &mut Reading, brief: &Brief, ask: &Ask, asked: &RoomsAsk) {
 /// Returns the words of a domain for a type of room, in the singular.
 fn words_for<'d>(domain: &'d Domain, id: &str) -> impl Iterator<Item = &'d str> {
     let kind = domain.room_type_or_lent(id).into_iter();
-    kind.flat_map(|kind| kind.keywords.values().flatten()).map(|word| word.trim_end_matches('s'))
+    let words = kind.flat_map(|kind| kind.keywords.values().chain(kind.called.values()).flatten());
+    words.map(|word| word.trim_end_matches('s'))
 }
 
 /// Adds how rooms that were `added` lie to others.
