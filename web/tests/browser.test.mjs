@@ -346,6 +346,17 @@ test("a world is opened by its link, and two tabs that change it are told", { sk
   await page.locator(`${id("notice")} button`, { hasText: "Take up that state" }).click();
   await saved(page);
   assert.equal(await drawn(page), await drawn(other.page));
+  // or one's own goes on top, and the other one is in the history
+  await remove(other.page);
+  await saved(other.page);
+  await remove(page);
+  await page.locator('[data-testid="saved"][data-saved="conflict"]').waitFor();
+  const mine = await drawn(page);
+  await page.locator(`${id("notice")} button`, { hasText: "Keep mine on top" }).click();
+  await saved(page);
+  assert.equal(await drawn(page), mine);
+  await open(page, "library");
+  await page.locator(`[data-world-id="${worldId}"]`, { hasText: "state 4" }).waitFor();
   sound([...faults, ...other.faults]);
   await other.context.close();
   await context.close();

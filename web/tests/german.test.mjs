@@ -36,9 +36,20 @@ test("rooms, things, people and rules have German names", { skip }, async () => 
   await page.getByTestId("simulate").click();
   assert.match(await page.locator("[data-condition-id]").first().innerText(), /Lieferroboter 1 kommt zu /);
 
+  await page.getByTestId("stage-library").click();
+  await page.locator('[data-domain-id="hospital"]', { hasText: "Krankenhaus und Praxis" }).waitFor();
   await page.getByTestId("export").click();
   await page.locator('input[value="plan"]').waitFor();
   assert.match(await page.locator(".formats").innerText(), /Architektenplan[^]*Roboterflotten/);
+  sound(faults);
+  await context.close();
+});
+
+test("rooms that another kind of building lends have German names too", { skip }, async () => {
+  const { page, context, faults } = await german();
+  await make(page, "Bürogebäude in Wien mit 4 Einzelbüros, einer Bäckerei und einem Untersuchungszimmer");
+  await page.locator("[data-room-id] title", { hasText: /^Untersuchungszimmer$/ }).waitFor({ state: "attached" });
+  await page.locator("[data-room-id] title", { hasText: /^Bäckerei$/ }).waitFor({ state: "attached" });
   sound(faults);
   await context.close();
 });

@@ -10,6 +10,7 @@ test("everybody walks over the plan, and encounters, distances and conditions ar
   const { page, context, faults } = await opened(browser, server.url);
   await make(page);
   await page.getByTestId("stage-people").click();
+  assert.match(await page.getByTestId("flows").innerText(), /\w+: [\d.]+ groups an hour, \d+ people at a time/);
   await page.getByTestId("minutes").fill("5");
   await page.getByTestId("simulate").click();
   const figures = page.getByTestId("crowd-figures");

@@ -1,5 +1,6 @@
 /** What rooms, things, people and rules are called in the reader's language: in the words of the page, else in those of the domain. */
-import { kindsOf } from "./kinds";
+import { domains } from "./api";
+import { type Kind, kindsOf } from "./kinds";
 import { t, texts, words } from "./texts.svelte";
 import { type Subject, type Wording, wordingOf } from "./wording";
 
@@ -7,24 +8,35 @@ import { type Subject, type Wording, wordingOf } from "./wording";
 const NUMBERED = /^(.*?)[ _](\d+)$/;
 const PARTS = { door: "part.door", wall: "part.wall", window: "part.window" } as const;
 
+/** Returns the kinds of rooms with these ids, of whichever domain has them. */
+async function lent(ids: string[]): Promise<Kind[]> {
+  if (ids.length === 0) return [];
+  const all = (await domains.listDomains({})).domains;
+  const kinds = await Promise.all(all.map(({ domainId }) => kindsOf(domainId)));
+  return kinds.flatMap(({ room }) => room.filter(({ id }) => ids.includes(id)));
+}
+
 class Names {
   #kinds = $state.raw(new Map<string, string>());
   /** English names of kinds of rooms, which rooms are called by. */
   #labels = $state.raw(new Map<string, string>());
   #wording = $state.raw<Wording | undefined>();
 
-  /** Learns what the kinds of a domain are called. */
-  async learn(domainId: string) {
+  /** Learns what things are called: the kinds of a domain too, and of those kinds of rooms that others lend it. */
+  async learn(domainId: string | undefined, roomTypes: string[]) {
     const language = texts.language;
     if (language === "en") {
       this.#kinds = this.#labels = new Map();
       this.#wording = undefined;
       return;
     }
-    const [kinds, wording] = await Promise.all([kindsOf(domainId), wordingOf(language)]);
+    const none = { room: [], object: [] };
+    const [kinds, wording] = await Promise.all([domainId ? kindsOf(domainId) : none, wordingOf(language)]);
+    const own = new Set(kinds.room.map(({ id }) => id));
+    const rooms = [...(await lent(roomTypes.filter((id) => !own.has(id)))), ...kinds.room];
     if (language !== texts.language) return;
-    this.#kinds = new Map([...kinds.room, ...kinds.object].map(({ id, name }) => [id, name]));
-    this.#labels = new Map(kinds.room.map(({ id, label }) => [id, label]));
+    this.#kinds = new Map([...rooms, ...kinds.object].map(({ id, name }) => [id, name]));
+    this.#labels = new Map(rooms.map(({ id, label }) => [id, label]));
     this.#wording = wording;
   }
 
@@ -47,6 +59,16 @@ class Names {
     if (kind in PARTS) return t(PARTS[kind as keyof typeof PARTS], { number });
     const name = this.#said("roles", kind) ?? this.#said("robots", kind.replace(/_robot$/, ""));
     return name ? `${name} ${number}`.trim() : words(id);
+  }
+
+  /** Returns who people of a role are. */
+  role(id: string): string {
+    return this.#said("roles", id) ?? words(id);
+  }
+
+  /** Returns what kind of building a domain is for, and what that is about. */
+  building({ domainId, title, description }: { domainId: string; title: string; description: string }): { title: string; about: string } {
+    return { title: this.#said("buildings", domainId) ?? title, about: this.#said("about", domainId) ?? description };
   }
 
   /** Returns what a hard rule demands, in the reader's language where that is known. */

@@ -26,19 +26,20 @@ const TRUTH = "boolean";
 /** Returns what was measured, in words: `1.5 m`; nothing where nothing was. */
 export function measuredIn(result: ConstraintResult): string {
   if (result.measured === undefined) return "";
-  return result.unit === TRUTH ? t(result.measured ? "yes" : "no") : `${figure(result.measured)} ${unitSaid(result.unit)}`;
+  return result.unit === TRUTH ? t(result.measured ? "yes" : "no") : `${figure(result.measured)} ${unitSaid(result.unit)}`.trim();
 }
 
-/** Returns what a constraint requires, in words: `at least 1.2 m`. */
+/** Returns what a constraint requires, in words: `at least 1.2 m`; nothing of what is so or is not. */
 export function required(result: ConstraintResult): string {
-  if (result.unit === TRUTH) return "";
-  const unit = unitSaid(result.unit);
-  const { requiredMin: min, requiredMax: max } = result;
+  return result.unit === TRUTH ? "" : wanted(result).trim();
+}
+
+function wanted({ unit: of, requiredMin: min, requiredMax: max }: ConstraintResult): string {
+  const unit = unitSaid(of);
   if (min !== undefined && max !== undefined && min !== max) return `${figure(min)} – ${figure(max)} ${unit}`;
   if (min !== undefined && max === min) return `${figure(min)} ${unit}`;
   if (min !== undefined) return t("atLeast", { value: figure(min), unit });
-  if (max !== undefined) return t("atMost", { value: figure(max), unit });
-  return "";
+  return max === undefined ? "" : t("atMost", { value: figure(max), unit });
 }
 
 export function ofConstraint(result: ConstraintResult): Broken {
@@ -46,7 +47,7 @@ export function ofConstraint(result: ConstraintResult): Broken {
   return {
     id: result.constraintId,
     subject: result.subject,
-    message: t("measuredBut", { name: names.measure(result.name), measured, required: required(result) }),
+    message: t("measuredBut", { name: names.measure(result.name), measured, required: required(result) || t("yes") }),
     hard: result.mandatory,
     measured: result.measured,
     required: result.requiredMin ?? result.requiredMax,

@@ -49,8 +49,9 @@ export function words(id: string): string {
   return id.replaceAll("_", " ");
 }
 
-/** Returns a unit as people write it: `m^2` becomes `m²`. */
+/** Returns a unit as people write it: `m^2` becomes `m²`; nothing for plain numbers. */
 export function unitSaid(unit: string): string {
+  if (unit === "count") return "";
   return unit.replace("^2", "²").replace("^3", "³").replace(/^deg$/, "°");
 }
 

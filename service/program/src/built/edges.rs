@@ -7,7 +7,7 @@ use d3dgen_model::style::LayoutStyle;
 
 use super::hosts::{are_public, is_beside};
 use super::rooms;
-use crate::built::growth::way_through;
+use crate::built::growth::{hub_hall, way_through};
 use crate::built::planned::Planned;
 use crate::named::compounds::opens_to;
 use crate::named::numbered::is_meant;
@@ -78,8 +78,7 @@ pub(crate) fn connect_storey(
 /// Returns the index of the room all others open to: a hub of the domain, a new corridor, or the only room.
 fn hub(reading: &mut Reading, planned: &[Planned], rooms: &mut Vec<GraphRoom>) -> usize {
     let circulation = &reading.domain.circulation;
-    let by_type = circulation.hub_room_types.iter().find_map(|t| rooms.iter().position(|r| &r.room_type == t));
-    let by_type = by_type.or_else(|| way_through(reading, planned));
+    let by_type = hub_hall(reading, planned).or_else(|| way_through(reading, planned));
     let free: Vec<usize> = (0..planned.len()).filter(|&i| planned[i].host.is_none()).collect();
     let forbidden = reading.wishes.forbidden.contains(&circulation.room_type);
     match (by_type, free.as_slice()) {

@@ -1,7 +1,7 @@
 //! Rooms that are entered through others: which room is the host of each en suite, closet and terrace.
 
 use d3dgen_knowledge::jurisdiction::rules_here;
-use d3dgen_model::domain::{Access, AdjacencyRelation, Domain, Privacy, RoomType, Zone};
+use d3dgen_model::domain::{Access, AdjacencyRelation, Domain, RoomType, Zone};
 use d3dgen_model::offer;
 use d3dgen_model::offer::sleeps;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
@@ -106,17 +106,9 @@ pub(super) fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         // "on the second floor a terrace": not that of the living room below
         let elsewhere = |h: usize| storeys[i].is_some_and(|at| storeys[h].is_some_and(|other| other != at));
         let hosted = room.kind.access == Access::Host;
-        // the closet of a suite is entered from its bedroom, not through the bathroom that the suite has too
-        let through_bath = |p: &&Pair| {
-            let bath = domain.room_type(&p.b).is_some_and(|k| k.access == Access::Host && k.wet);
-            hosted && bath && !room.kind.hosts.contains(&p.b)
-        };
-        let belongs = pairs.iter().find(|p| p.a == room.room_type).filter(|p| !through_bath(p));
-        // "management with boardroom": nobody meets behind somebody's office
-        let shared = room.kind.privacy != Privacy::Private && room.kind.zone == Zone::Day && !hosted;
-        let through = |p: &&Pair| domain.room_type(&p.b).is_some_and(|k| k.privacy == Privacy::Private);
-        let works = is_office(reading.program);
-        let belongs = belongs.filter(|p| !(works && shared && through(p)));
+        // "management with boardroom": nobody meets behind somebody's office; a closet is not entered through a bathroom
+        let through = |p: &&Pair| domain.room_type(&p.b).is_some_and(|host| !room.kind.may_hang_on(host));
+        let belongs = pairs.iter().find(|p| p.a == room.room_type).filter(|p| !through(p));
         // "lobby with counters": the public goes on from one to the other, those who work there do not
         let belongs = belongs.filter(|p| !are_public(reading, p));
         if !hosted && belongs.is_none() {
@@ -161,21 +153,14 @@ pub(super) fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
                 format!("{} has no room to be entered from; it opens to the circulation instead", room.kind.label);
             reading.assumptions.push(Note::new("no_host", message));
         }
-        rooms[i].host = host.filter(|&h| hosted || leads_to(rooms[h].kind, rooms[i].kind));
+        rooms[i].host = host;
     }
 }
 
-/// Returns true where one may come to a room through another: nobody goes to the preparation through the operating room, which is
-/// private, but to a bathroom through the bedroom that it is given to.
-fn leads_to(outer: &RoomType, inner: &RoomType) -> bool {
-    outer.privacy != Privacy::Private || inner.wet || outer.access == Access::Host && outer.hosts.contains(&inner.id)
-}
-
-/// Returns true for a pair of rooms of which the second is private, so that the first is beside it and not behind it.
+/// Returns true for a pair of rooms of which the first cannot be entered through the second, so that it is beside it and not behind it.
 pub(super) fn is_beside(reading: &Reading, pair: &Pair) -> bool {
     let of = |id: &str| reading.domain.room_type_or_generic(id);
-    let (inner, outer) = (of(&pair.a), of(&pair.b));
-    pair.belongs && inner.access != Access::Host && !leads_to(outer, inner)
+    pair.belongs && of(&pair.a).access != Access::Host && !of(&pair.a).may_hang_on(of(&pair.b))
 }
 
 /// Returns the room that a lock of a pair is the way into: one more of the pair's that has none yet. Locks serve, and are the way
@@ -186,7 +171,10 @@ fn behind_lock(domain: &Domain, rooms: &[Planned], lock: usize, pair: &Pair) -> 
     let before = |t: &RoomType| t.access == Access::Host && t.hosts.contains(&kind.id) && larger(t);
     let locks = matches!(kind.zone, Zone::Service | Zone::Circulation) && kind.access != Access::Host;
     let free = |r: &Planned| {
-        r.room_type == pair.b && r.host.is_none() && r.kind.access != Access::Host && (larger(r.kind) || r.name.is_some())
+        r.room_type == pair.b
+            && r.host.is_none()
+            && r.kind.access != Access::Host
+            && (larger(r.kind) || r.name.is_some())
     };
     if !locks || !domain.room_types.iter().any(before) {
         return None;

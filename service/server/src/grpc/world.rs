@@ -1,7 +1,7 @@
 //! `WorldService`.
 
 mod edit;
-pub(in crate::grpc) mod export;
+pub(crate) mod export;
 mod generate;
 mod import;
 mod simulate;

@@ -22,7 +22,7 @@ use crate::status::{self, invalid, reason};
 use crate::{jobs, names};
 
 /// Bytes of an archive of a batch at most: it lies in memory until it is taken.
-const LARGEST: usize = 1 << 30;
+const LARGEST: usize = 512 << 20;
 
 /// The models of the database, for the files of worlds.
 struct Kept<'a>(&'a Core);
@@ -43,7 +43,7 @@ impl KeptModels for Kept<'_> {
 ///
 /// # Errors
 /// `INVALID_ARGUMENT` for a format that is none, and for names in the world that lead out of its folder.
-pub(super) fn files(
+pub(crate) fn files(
     core: &Core,
     world: &World,
     formats: &[String],
