@@ -1,6 +1,6 @@
 //! A prompt from its words to its brief.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -49,6 +49,8 @@ pub struct ReadPrompt {
     pub steps: Vec<Step>,
     /// The facts in short, one for each of the brief.
     pub facts: Vec<String>,
+    /// Names of rooms that no lexicon has and of which a part told the type of room, with that type.
+    pub told_by_a_part: BTreeMap<String, String>,
 }
 
 impl PromptReader {
@@ -76,6 +78,7 @@ impl PromptReader {
             None => reading.languages().first().is_some_and(|l| first_floor_is_ground_in(l)),
         };
         let known = Known::of(&self.registry, domain);
+        let told = Rc::clone(&known.told_by_a_part);
         let mut maker = Maker { reading: &reading, known, first_is_ground, facts: Vec::new() };
         nodes.iter().for_each(|n| {
             maker.add(n);
@@ -97,6 +100,7 @@ impl PromptReader {
             misspelled: misspelled(&reading),
             steps: steps(grammar, &applied, &reading),
             facts,
+            told_by_a_part: told.take(),
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Rooms and objects that words name: which of their senses the building at hand knows.
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 use std::sync::LazyLock;
 
 use d3dgen_language::{Reading, fold};
@@ -9,6 +11,7 @@ use d3dgen_model::domain::Domain;
 use d3dgen_plugins::Registry;
 use serde::Deserialize;
 
+use crate::likely;
 use crate::node::Node;
 
 /// Id of the way into the building, as words have it.
@@ -39,6 +42,8 @@ pub(crate) struct Known<'d> {
     pub objects: BTreeSet<String>,
     domain: Option<&'d Domain>,
     registry: Option<&'d Registry>,
+    /// Names of rooms of which only a part told the type, with that type.
+    pub told_by_a_part: Rc<RefCell<BTreeMap<String, String>>>,
 }
 
 impl<'d> Known<'d> {
@@ -50,6 +55,7 @@ impl<'d> Known<'d> {
             objects: plugin.domain().objects.iter().map(|o| o.id.clone()).collect(),
             domain: Some(plugin.domain()),
             registry: Some(registry),
+            ..Self::default()
         }
     }
 
@@ -101,7 +107,10 @@ impl<'d> Known<'d> {
         let ends = own.iter().map(|n| n.tokens.clone()).chain(named.map(|n| n.tokens.clone()));
         let span = ends.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end));
         let name = span.map_or("", |s| reading.written(s)).to_owned();
-        Subject { id, name }
+        let told = || likely::room_called(&name, id.as_deref(), reading.languages(), |room| self.rooms.contains(room));
+        let Some(likely) = (class == "room").then(told).flatten() else { return Subject { id, name } };
+        self.told_by_a_part.borrow_mut().insert(name.clone(), likely.to_owned());
+        Subject::known(likely, &name)
     }
 
     /// Returns the object that places are: desks, beds.
