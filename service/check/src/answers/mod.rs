@@ -13,7 +13,6 @@ use std::collections::BTreeSet;
 use d3dgen_model::brief::{Ask, AskedCount, Brief, Fact, ObjectsAsk, RoomsAsk, Subject};
 use d3dgen_model::domain::Domain;
 use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom};
-use d3dgen_model::geometry::Segment;
 use d3dgen_model::report::{AskAnswer, Fate};
 use d3dgen_model::scene_graph::GraphRoom;
 use d3dgen_model::world::World;
@@ -22,8 +21,6 @@ use self::subjects::Found;
 
 /// Share by which a floor area or side that was asked for may be missed.
 const MEASURE_MISS: f64 = 0.05;
-/// Distance of two outer walls up to which they are one facade, m.
-const SAME_FACADE_M: f64 = 1.0;
 /// Attribute of rooms that people in wheelchairs use.
 const ACCESSIBLE: &str = "accessible";
 /// Letters of a word from which a conflict that has it is taken to speak of the wish that has it too.
@@ -230,14 +227,9 @@ impl Asked<'_> {
         let called = self.rooms_called(&asked.room).rooms;
         let all: Vec<&GraphRoom> = self.world.scene_graph.rooms.iter().filter(|r| r.requested).collect();
         let among = if called.is_empty() { all } else { called };
-        let sized = |r: &GraphRoom| {
-            let net = self.world.floorplan.room(&r.id).map_or(0.0, |p| p.net_polygon.area());
-            asked.area_m2.is_none_or(|area| (net - area).abs() <= MEASURE_MISS * area)
-        };
-        let is_so = |r: &&&GraphRoom| sized(r) && asked.attributes.iter().all(|a| self.has_itself(a, r));
+        let is_so = |r: &&&GraphRoom| asked.attributes.iter().all(|a| self.has_itself(a, r));
         let so: Vec<String> = among.iter().filter(is_so).map(|r| r.id.clone()).collect();
-        let area = asked.area_m2.map(|area| format!("{area} m2 large"));
-        let words: Vec<String> = asked.attributes.iter().map(|a| a.replace('_', " ")).chain(area).collect();
+        let words: Vec<String> = asked.attributes.iter().map(|a| a.replace('_', " ")).collect();
         let what = format!("{} that are {}", asked.room.label(), words.join(" and "));
         Finding::counted(asked.count, so, &what)
     }
@@ -296,26 +288,11 @@ impl Asked<'_> {
             "separate" | "closed" => all(&|r| plan.doors_of(&r.id).all(|d| d.kind != DoorKind::Open)),
             "large" => all(&|r| area(r) >= usual(r)),
             "small" => all(&|r| area(r) <= usual(r)),
-            "garden_door" | "outdoor_door" => all(&|r| plan.doors_of(&r.id).any(|d| outdoors(d) && !d.entrance)),
-            "garden" => all(&|r| self.looks_from_the_street(r)),
+            "garden_door" | "outdoor_door" => all(&|r| plan.doors_of(&r.id).any(outdoors)),
             "own_bathroom" => all(&|r| self.doors_between(&r.id, wet).next().is_some()),
             "own_entrance" => all(&|r| plan.doors_of(&r.id).any(outdoors)),
             other => self.named_so(other, rooms),
         }
-    }
-
-    /// Returns true for a room with a window or a door in another facade than that of the entrance.
-    fn looks_from_the_street(&self, room: &GraphRoom) -> bool {
-        let plan = &self.world.floorplan;
-        let facade = |line: &Segment| (line.is_vertical(), line.span().0);
-        let street = plan.doors.iter().find(|d| d.entrance).map(|d| facade(&d.line));
-        let away = |line: &Segment| {
-            let (vertical, at) = facade(line);
-            street.is_none_or(|(v, s)| v != vertical || (s - at).abs() > SAME_FACADE_M)
-        };
-        let windows = plan.windows.iter().filter(|w| w.room_id == room.id).map(|w| &w.line);
-        let doors = plan.doors_of(&room.id).filter(|d| d.room_ids.len() == 1).map(|d| &d.line);
-        windows.chain(doors).any(away)
     }
 
     /// Returns whether rooms are of a type that has the attribute in its name: `double` of `patient_room_double`.

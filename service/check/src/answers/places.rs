@@ -2,19 +2,15 @@
 
 use std::collections::BTreeSet;
 
-use d3dgen_model::brief::{AskedCount, Bound, CapacityAsk, PeopleAsk, PlaceKind};
+use d3dgen_model::brief::{AskedCount, CapacityAsk, PeopleAsk, PlaceKind};
 use d3dgen_model::domain::{Domain, ObjectType, RoomType, Shape};
 use d3dgen_model::measures::BED_FOR_TWO_M;
-use d3dgen_model::offer::{places, seating, seats_across, sleeps, works_in};
+use d3dgen_model::offer::{seating, seats_across, sleeps, works_in};
 use d3dgen_model::report::Fate;
 use d3dgen_model::scene_graph::GraphRoom;
 
 use super::{Asked, Finding};
 
-/// Times as many places as people from which on a building is for others, and places on top of that for those who visit.
-const MOST_SPARE: u32 = 2;
-/// Places that a building has beside those of the people it is for.
-const SPARE_PLACES: u32 = 10;
 /// Width of a place on a sofa, m.
 const SOFA_SEAT_M: f64 = 0.65;
 
@@ -87,13 +83,10 @@ impl<'a> Asked<'a> {
             PlaceKind::Desks => vec![all(desks)],
             // a couch that somebody is examined on is no bed of a ward
             PlaceKind::Beds => vec![of_rooms(beds, |domain, kind| sleeps(domain, kind).is_some()), all(beds)],
-            PlaceKind::Cars => vec![all(|s| u32::from(s.shape == Shape::Vehicle)), self.units(within)],
+            PlaceKind::Cars => vec![all(|s| u32::from(s.shape == Shape::Vehicle))],
             PlaceKind::Counters => vec![all(|s| u32::from(s.shape == Shape::Counter))],
             PlaceKind::Treatment => vec![self.treated(|room| within(&room.id))],
-            // stalls for cows: what the words of a room type count
-            PlaceKind::Bicycles | PlaceKind::Docks | PlaceKind::Animals | PlaceKind::Pallets => {
-                vec![Some(self.units(within)).filter(|held| held.places > 0)?]
-            }
+            PlaceKind::Bicycles | PlaceKind::Docks | PlaceKind::Animals | PlaceKind::Pallets => return None,
         };
         let (some, none): (Vec<Held>, Vec<Held>) = readings.into_iter().partition(|held| held.places > 0);
         Some(if some.is_empty() { none } else { some })
@@ -115,42 +108,21 @@ impl<'a> Asked<'a> {
         held
     }
 
-    /// Returns the places that words of room types count: the bays of a parking hall, the stalls of a barn.
-    fn units(&self, within: impl Fn(&str) -> bool) -> Held {
-        let mut held = Held::default();
-        for placement in self.world.placements.placements.iter().filter(|p| within(&p.room_id)) {
-            let room = self.world.scene_graph.room(&placement.room_id);
-            let kind = room.and_then(|r| self.domain.room_type_or_lent(&r.room_type)).filter(|k| !k.places.is_empty());
-            let Some(counted) = kind.and_then(|kind| places(self.domain, kind)) else { continue };
-            if self.domain.anchor(&counted.line.item).is_some_and(|o| o.id == placement.object) {
-                held.places += counted.each;
-                held.ids.push(placement.placement_id.clone());
-            }
-        }
-        held
-    }
-
     /// Returns the places to lie or sit at while treated: what one lies on that is no bed to sleep in.
     fn treated(&self, within: impl Fn(&GraphRoom) -> bool) -> Held {
         self.held(|s| u32::from(s.shape != Shape::Bed && s.object.affordances.iter().any(|a| a == "lie")), within)
     }
 
-    /// Returns whether the building is for so many people: with a place for each to sleep, work or sit at. Of the ways to count such
-    /// places the tightest is told that holds them all.
+    /// Returns whether the building is for so many people: counted so by the scene graph, with a place for each to sleep,
+    /// work or sit at.
     pub(super) fn people(&self, asked: &PeopleAsk) -> Finding {
-        let everywhere = |each| self.held(each, |_| true).places;
-        let readings = [everywhere(sleepers), everywhere(desks), everywhere(guest_seats), everywhere(seats_of)];
-        let enough = readings.into_iter().filter(|n| *n >= asked.count.n).min();
-        let n = enough.or(readings.into_iter().max()).unwrap_or(0);
-        let what = format!("places for {}", asked.role.replace('_', " "));
-        let found = Finding::number(AskedCount::at_least(asked.count.n), n, &what);
-        let most = asked.count.n.saturating_mul(MOST_SPARE) + SPARE_PLACES;
-        if found.fate == Fate::Honored && n > most && asked.count.bound != Bound::AtLeast {
-            let reason = format!("{} {what} asked for, {n} built", asked.count);
-            return Finding { fate: Fate::Substituted, reason, ..found };
-        }
         let occupancy = &self.world.scene_graph.occupancy;
         let counted = [occupancy.staff, occupancy.beds, occupancy.desks, occupancy.visitors, occupancy.residents];
+        let everywhere = |each| self.held(each, |_| true).places;
+        let places = [everywhere(sleepers), everywhere(desks), everywhere(seats_of)];
+        let most = places.into_iter().max().unwrap_or(0);
+        let what = format!("places for {}", asked.role.replace('_', " "));
+        let found = Finding::number(AskedCount::at_least(asked.count.n), most, &what);
         if found.fate == Fate::Honored || !counted.contains(&Some(asked.count.n)) {
             return found;
         }

@@ -1,9 +1,8 @@
 //! Which rooms and objects of a world are meant by a name of the brief.
 
 use d3dgen_model::brief::Subject;
-use d3dgen_model::domain::{Program, Words};
+use d3dgen_model::domain::Words;
 use d3dgen_model::floorplan::Door;
-use d3dgen_model::geometry::Point;
 use d3dgen_model::placements::Placement;
 use d3dgen_model::scene_graph::GraphRoom;
 
@@ -11,9 +10,6 @@ use super::Asked;
 
 /// Id of the way into the building, which is no room: the rooms that one enters it through.
 const ENTRANCE: &str = "entrance";
-
-/// Gap between an object and a window that it stands at, m.
-const AT_WINDOW_M: f64 = 0.6;
 
 /// What goes by a name.
 #[derive(Default)]
@@ -54,24 +50,15 @@ impl<'a> Asked<'a> {
     pub fn rooms_called(&self, subject: &Subject) -> Found<'a> {
         let name = as_id(&subject.name);
         let id = subject.id.as_deref().unwrap_or(&name);
-        // a treatment room of dentists is one with their chair
-        let meant = self.program().and_then(|p| p.means.get(id));
         let is_so = |r: &&GraphRoom| {
             if id == ENTRANCE {
                 return r.entrance;
             }
             let worded =
                 || self.domain.room_type_or_lent(&r.room_type).is_some_and(|t| has_word(&t.keywords, &subject.name));
-            is_kind_of(&r.room_type, id) || meant == Some(&r.room_type) || worded() || !name.is_empty() && is_kind_of(&as_id(&r.name), &name)
+            is_kind_of(&r.room_type, id) || worded() || !name.is_empty() && is_kind_of(&as_id(&r.name), &name)
         };
         Found { rooms: self.world.scene_graph.rooms.iter().filter(is_so).collect(), ..Found::default() }
-    }
-
-    /// Returns what a building of this kind has.
-    pub fn program(&self) -> Option<&'a Program> {
-        let kind = self.world.scene_graph.building_type.as_deref();
-        let kind = self.domain.building_types.iter().find(|b| Some(b.id.as_str()) == kind)?;
-        self.domain.program(&kind.program)
     }
 
     /// Returns the objects that go by a name, as rooms do.
@@ -95,23 +82,10 @@ impl<'a> Asked<'a> {
         named(&placement.object)
             || named(&placement.asset)
             || match attribute {
-                "at_window" => self.is_at_window(placement),
                 "large" => usual.is_some_and(|usual| own > usual) || sizes.iter().all(|s| floor(s) <= own),
                 "small" => usual.is_some_and(|usual| own < usual) || sizes.iter().all(|s| floor(s) >= own),
                 _ => false,
             }
-    }
-
-    /// Returns true for an object within reach of a window of its room.
-    fn is_at_window(&self, placement: &Placement) -> bool {
-        let at = Point { x: placement.pose.x, y: placement.pose.y };
-        let half = placement.size_m[0].max(placement.size_m[1]) / 2.0;
-        let windows = self.world.floorplan.windows.iter().filter(|w| w.room_id == placement.room_id);
-        windows.into_iter().any(|w| {
-            let (line, from, to) = w.line.span();
-            let (across, along) = if w.line.is_vertical() { (at.x, at.y) } else { (at.y, at.x) };
-            (across - line).abs() <= half + AT_WINDOW_M && from - half <= along && along <= to + half
-        })
     }
 
     /// Returns the passages from a room to those that `is_other` takes.

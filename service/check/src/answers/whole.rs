@@ -82,28 +82,12 @@ impl Asked<'_> {
         self.rooms_called(subject).rooms.iter().all(|r| self.world.scene_graph.keeps_robots_out(&r.id))
     }
 
-    /// A unit within a house is one where it has one storey, a house in a row has no windows toward its neighbors, and what stands free
-    /// is of a kind that none stand against. Other ways to stand change no plan.
+    /// A unit within a house is one where it has one storey; how a building stands among others changes no plan beside that.
     pub(super) fn site(&self, asked: &SiteAsk) -> Finding {
-        let graph = &self.world.scene_graph;
-        let level = graph.rooms.first().map(|r| r.level);
-        let flat = graph.rooms.iter().all(|r| Some(r.level) == level);
-        let kind = self.domain.building_types.iter().find(|b| Some(b.id.as_str()) == graph.building_type.as_deref());
-        let attached = kind.is_some_and(|b| b.attached.is_some());
-        let windows = &self.world.floorplan.windows;
-        let one_way = windows.windows(2).all(|w| w[0].line.is_vertical() == w[1].line.is_vertical());
-        let so = match asked.kind {
-            SiteKind::Inside => flat,
-            SiteKind::Terraced => attached && one_way,
-            SiteKind::FreeStanding => !attached,
-            SiteKind::SemiDetached | SiteKind::Corner => false,
-        };
-        let reason = || match asked.kind {
-            SiteKind::Terraced => "it has windows toward its neighbors too".into(),
-            SiteKind::Inside | SiteKind::FreeStanding => "it is planned otherwise".into(),
-            SiteKind::SemiDetached | SiteKind::Corner => "neighbors at one side or at a corner change no plan yet".into(),
-        };
-        Finding::when(so, Vec::new(), reason)
+        let level = self.world.scene_graph.rooms.first().map(|r| r.level);
+        let flat = self.world.scene_graph.rooms.iter().all(|r| Some(r.level) == level);
+        let reason = || "how a building stands among others changes no plan yet".into();
+        Finding::when(asked.kind == SiteKind::Inside && flat, Vec::new(), reason)
     }
 
     pub(super) fn style(&self, asked: &StyleAsk) -> Finding {
@@ -149,7 +133,9 @@ impl Asked<'_> {
 
     /// Returns how many rooms there are as people count those of such a building: those to sleep in of a hotel.
     fn rooms_counted(&self, rooms: &[&GraphRoom]) -> u32 {
-        let counted = self.program().and_then(|p| p.means.get(GENERIC_ROOM_TYPE));
+        let kind = self.world.scene_graph.building_type.as_deref();
+        let kind = self.domain.building_types.iter().find(|b| Some(b.id.as_str()) == kind);
+        let counted = kind.and_then(|b| self.domain.program(&b.program)).and_then(|p| p.means.get(GENERIC_ROOM_TYPE));
         rooms.iter().filter(|r| counted.is_none_or(|id| r.room_type.starts_with(id.as_str()))).count() as u32
     }
 
