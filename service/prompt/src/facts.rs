@@ -153,8 +153,14 @@ impl Maker<'_> {
     /// States a storey that nothing is said to lie on.
     fn storey_alone(&mut self, node: &Node) {
         let storey = self.storeys_named(node).first().copied();
-        let wish = self.reading.written(node.tokens.clone()).to_owned();
-        self.facts.push(Stated { storey, ..Stated::new(node, Fact::Other(OtherAsk { wish })) });
+        let wish = || Fact::Other(OtherAsk { wish: self.reading.written(node.tokens.clone()).to_owned() });
+        let so_high =
+            |level: i32| StoreysAsk { count: AskedCount::at_least(1 + level.max(0) as u32), basement: level < 0 };
+        let fact = match storey {
+            Some(Storey::At(level)) => Fact::Storeys(so_high(level)),
+            _ => wish(),
+        };
+        self.facts.push(Stated { storey, ..Stated::new(node, fact) });
     }
 
     /// States the rooms and things of work that no robot is found for.

@@ -124,7 +124,8 @@ impl<'d> Known<'d> {
         node.values("object").any(|id| id == station).then(|| station.clone())
     }
 
-    /// Returns the room or object that a node of the grammar is about: a field of that class, or words of the prompt's own.
+    /// Returns the room or object that a node of the grammar is about: a field of that class, or words of the prompt's own. With a
+    /// word beside it that nobody knows, a room of another trade is one of its own name: no brewery's "cella fredda" is a prison's.
     pub fn subject(&self, node: &Node, class: &str, reading: &Reading) -> Subject {
         let own: Vec<&Node> = node.all("own").map(|n| &**n).collect();
         let named = node.field(class);
@@ -132,6 +133,8 @@ impl<'d> Known<'d> {
         let ends = own.iter().map(|n| n.tokens.clone()).chain(named.map(|n| n.tokens.clone()));
         let span = ends.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end));
         let name = span.map_or("", |s| reading.written(s)).to_owned();
+        let strange = class == "room" && own.iter().any(|n| n.is_unknown());
+        let id = id.filter(|id| !strange || self.rooms.is_empty() || self.rooms.contains(id));
         Subject { id, name }
     }
 

@@ -42,6 +42,7 @@ impl Maker<'_> {
                 return;
             }
         }
+        let count = self.without_part(node, &room, count);
         let several = count.n > 1;
         let mut ask = RoomsAsk {
             room: room.clone(),
@@ -141,6 +142,16 @@ impl Maker<'_> {
             objects.room = Some(room.clone());
             objects.count.n = objects.count.n.saturating_mul(rooms);
         }
+    }
+
+    /// States what some of the rooms are instead, and returns how many are left: "four bedrooms, one of them a study".
+    fn without_part(&mut self, node: &Node, room: &Subject, count: AskedCount) -> AskedCount {
+        let Some(part) = node.field("part").cloned() else { return count };
+        self.state(&part, Around::default());
+        let of_part = node.field("some").and_then(|n| number(n)).or_else(|| self::count(&part)).map_or(1, |c| c.n);
+        let other = self.subject(&part);
+        let same = other.id == room.id && other.id.is_some();
+        AskedCount { n: if same { count.n } else { count.n.saturating_sub(of_part).max(1) }, ..count }
     }
 
     /// States rooms that are told by their places alone: "cinema with two halls, 120 and 60 seats".
