@@ -142,6 +142,8 @@ def judge(task):
             broken, seen = load(f"{label}_referee", path).judge(file, on_level(folder, graph, int(file.parent.name)))
             found += [f"{label}: {b['rule']}: {b['subject']}" for b in broken]
             sums.update({key: value for key, value in seen.items() if isinstance(value, (int, float))})
+        if label == "own":
+            found += [f"{label}: {b['rule']}: {b['subject']}" for b in load("own_referee", path).judge_building(files)]
         figures = sums | figures
     return folder, found, figures
 

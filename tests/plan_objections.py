@@ -103,7 +103,8 @@ class World:
     def __init__(self, folder):
         documents = ("floorplan", "placements", "scenario", "scene_graph")
         plan, placements, scenario, graph = (json.loads((folder / f"{name}.json").read_text()) for name in documents)
-        self.building, self.area = graph.get("building_type"), sum(r["net_area_m2"] for r in plan["rooms"])
+        self.domain, self.building = graph["domain"], graph.get("building_type")
+        self.area = sum(r["net_area_m2"] for r in plan["rooms"])
         self.notes = graph.get("conflicts", [])
         self.rooms = [Room(r, plan, placements["placements"]) for r in plan["rooms"]]
         self.walls = [line_of(w) for w in plan["walls"]]
@@ -127,9 +128,20 @@ def gap(a, b):
     return math.hypot(max(0.0, a[0] - b[2], b[0] - a[2]), max(0.0, a[1] - b[3], b[1] - a[3]))
 
 
-def outline(points):
-    xs, ys = [p["x"] for p in points], [p["y"] for p in points]
+def extent(corners):
+    """The rectangle around corners."""
+    xs, ys = zip(*corners, strict=True)
     return (min(xs), min(ys), max(xs), max(ys))
+
+
+def floor_of(corners):
+    """The area of a polygon."""
+    pairs = zip(corners, corners[1:] + corners[:1], strict=True)
+    return abs(sum(x0 * y1 - x1 * y0 for (x0, y0), (x1, y1) in pairs)) / 2.0
+
+
+def outline(points):
+    return extent([(p["x"], p["y"]) for p in points])
 
 
 def line_of(thing):
@@ -1097,6 +1109,38 @@ def visitors_at_surgery(world):
     return any(r.circulation and r.id in at[0] and r.id in at[1] for r in world.rooms)
 
 
+@objection("B", "residential")
+def notched_between_neighbors(world):
+    """a storey of a flat or house in a row that leaves more than a tenth of its plot open"""
+    for level in {r.level for r in world.rooms} if world.building in ATTACHED else ():
+        here = [r for r in world.rooms if r.level == level]
+        x0, y0, x1, y1 = extent([corner for r in here for corner in r.outer])
+        if 1.0 - sum(floor_of(r.outer) for r in here) / ((x1 - x0) * (y1 - y0)) > 0.1:
+            return True
+    return False
+
+
+@objection("A", "residential")
+def bath_behind_a_bedroom(world):
+    """the only bathroom of a storey with several bedrooms entered from one of them"""
+    halls = {r.id for r in world.rooms if r.circulation}
+    for level in {r.level for r in world.rooms}:
+        baths = [r for r in world.of("bathroom", "accessible_bathroom", "shower_room") if r.level == level]
+        shared = [b for b in baths if any(halls & set(d["room_ids"]) for d in b.doors)]
+        asleep = [r for r in world.of("bedroom", "single_bedroom", "kids_room") if r.level == level]
+        if len(asleep) > len(baths) > 0 and not shared:
+            return True
+    return False
+
+
+@objection("B", "hospital")
+def corridor_for_no_beds(world):
+    """a corridor of more than 2.3 m without a bed on wheels in the building"""
+    ways = [r.rect for r in world.rooms if r.circulation and len(r.corners) == 4]
+    beds = any(r.having("hospital_bed", "bariatric_bed", "stretcher", "operating_table") for r in world.rooms)
+    return not beds and any(min(x1 - x0, y1 - y0) > 2.3 for x0, y0, x1, y1 in ways)
+
+
 @objection("B", "hospital")
 def dark_room(world):
     """a room with no lamp at its ceiling"""
@@ -1332,7 +1376,7 @@ def page():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path, nargs="?", help="worlds, at any depth; the folder of a set begins with its domain")
+    parser.add_argument("folder", type=Path, nargs="?", help="worlds, at any depth")
     parser.add_argument("--page", nargs="?", const=True, metavar="FILE", help="print the objections, or look for them in a page")
     parser.add_argument("--list", action="store_true", help="name the plans of each objection")
     options = parser.parse_args()
@@ -1352,8 +1396,8 @@ def main():
     raised, plans, back, clean = defaultdict(list), Counter(), Counter(), Counter()
     for folder in folders:
         name = folder.relative_to(options.folder)
-        domain = name.parts[0].split("_")[0]
         world = World(folder)
+        domain = world.domain
         mine = [(w, text) for w, where, text, holds in OBJECTIONS if where in (None, domain) and holds(world)]
         for entry in mine:
             raised[entry].append(str(name))

@@ -40,6 +40,8 @@ RULES = {
     "private_way": "no room but an en suite or a closet is reached only through a bedroom or bathroom",
     "graph_room": "zones are the rooms of the graph, with their types",
     "graph_link": "rooms the graph connects have a door or an opening between them",
+    "storey_stands": "of a storey at most a tenth lies beyond the storey below it",
+    "toilets": "a building of several rooms has a toilet; where nobody sleeps, one for wheelchairs on the ground too",
 }
 
 LEAST_COURT_M2 = 25.0  # larger than any stairwell
@@ -48,6 +50,12 @@ LINE = 0.05  # half the thickness in which a wall stops a robot
 FLAT = 0.03  # things this low are driven over
 HEAD = 1.2  # things that begin this high do not stop a robot
 SLACK = 0.03  # rounding of a robot's radius that a 5 cm grid would allow too
+MOST_BEYOND = 0.1  # share of a storey that may jut out over the one below
+LEAST_ROOMS = 5  # zones of a building from which on it is one that people spend their day in
+# Words in types of things and rooms: what flushes, what is made for wheelchairs, where people sleep.
+FLUSHES = ("wc", "toilet", "urinal", "cubicle")
+STEP_FREE = ("accessible", "assisted", "bariatric")
+SLEEPS = ("bedroom", "studio", "living", "patient", "resident", "ward", "guest_room", "dorm", "cell", "icu", "care_room")
 # Words in room types: rooms one does not walk through, and rooms that may open on such a room alone.
 PRIVATE = ("bedroom", "bath", "suite", "shower", "toilet", "guest_room", "patient_room")
 BELONGS = ("bath", "suite", "shower", "toilet", "closet", "dressing", "balcony")
@@ -73,7 +81,7 @@ class Thing:
     """A static entity as a footprint between two heights."""
 
     def __init__(self, entity, zone):
-        self.name, self.zone = entity["name"], zone
+        self.name, self.zone, self.type = entity["name"], zone, entity.get("type", "")
         at, turn = entity["pose"]["position"], entity["pose"]["orientation"]
         w, x, y, z = (turn[k] for k in "wxyz")
         yaw = math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
@@ -247,7 +255,7 @@ class World:
                 self.fail("private_way", name)
 
     def is_any(self, zone, words):
-        return any(word in self.types.get(zone, "") for word in words)
+        return has_word(self.types.get(zone, ""), words)
 
     def check_graph(self):
         wanted = {room["id"]: room.get("room_type") for room in self.graph["rooms"]}
@@ -269,13 +277,49 @@ class World:
         }
 
 
-def judge(path, graph=None, radius=0.30):
-    """Returns what is broken in a world.yaml, and its figures."""
+def has_word(text, words):
+    return any(word in text for word in words)
+
+
+def check_building(storeys):
+    """Returns what is broken in a building: its worlds by the number of their storey."""
+    broken, levels = [], sorted(storeys)
+    for below, level in zip(levels, levels[1:]):
+        if below < 0:
+            continue  # a cellar stands in the ground
+        lower, upper = (unary_union(list(storeys[n].zones.values())) for n in (below, level))
+        beyond = upper.difference(lower.buffer(NEAR, join_style="mitre")).area / max(1.0, upper.area)
+        if beyond > MOST_BEYOND:
+            broken.append({"rule": "storey_stands", "subject": f"level {level}", "share": round(beyond, 3)})
+    types = [t for world in storeys.values() for t in world.types.values()]
+    if len(types) < LEAST_ROOMS:
+        return broken
+    flushing = {n: [t.type for t in world.things if has_word(t.type, FLUSHES)] for n, world in storeys.items()}
+    ground = flushing.get(0, [])
+    if not any(flushing.values()):
+        broken.append({"rule": "toilets", "subject": "world"})
+    elif not any(has_word(t, SLEEPS) for t in types) and not any(has_word(t, STEP_FREE) for t in ground):
+        broken.append({"rule": "toilets", "subject": "level 0", "for": "wheelchairs"})
+    return broken
+
+
+def read(path, graph=None, radius=0.30):
+    """Returns the world of a world.yaml."""
     with open(path, encoding="utf-8") as file:
         doc = yaml.load(file, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-    world = World(doc, graph, radius)
+    return World(doc, graph, radius)
+
+
+def judge(path, graph=None, radius=0.30):
+    """Returns what is broken in a world.yaml, and its figures."""
+    world = read(path, graph, radius)
     assert all(b["rule"] in RULES for b in world.broken)
     return world.broken, world.figures()
+
+
+def judge_building(files):
+    """Returns what is broken in the building whose storeys have these world.yaml, each in a folder of its number."""
+    return check_building({int(file.parent.name): read(file) for file in files})
 
 
 def main():
@@ -289,8 +333,13 @@ def main():
     clean = 0
     try:
         graph = json.loads(args.graph.read_text()) if args.graph else None
+        storeys = {}
+        for file in files:
+            storeys.setdefault(file.parent.parent, []).append(file)
+        of_building = {own[0]: judge_building(own) for own in storeys.values() if all(f.parent.name.lstrip("-").isdigit() for f in own)}
         for file in files:
             broken, figures = judge(file, graph, args.robot_radius)
+            broken += of_building.get(file, [])
             clean += not broken
             if args.json:
                 print(json.dumps({"world": str(file), "broken": broken, "figures": figures}))

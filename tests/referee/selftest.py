@@ -5,7 +5,7 @@ import copy
 import math
 import sys
 
-from check_world import RULES, World
+from check_world import RULES, World, check_building
 
 
 def at(x, y, z=0.0):
@@ -105,13 +105,36 @@ BREAKS = {
 }
 
 
+def building(*, beyond=0.0, toilet="accessible_wc", upper_type="office"):
+    """Two storeys of five rooms with one toilet at the ground; the upper one reaches beyond the lower one."""
+    def storey(right, kinds, objects):
+        zones = []
+        for i, kind in enumerate(kinds):
+            box = [(4 * i, 0), (4 * i + 4, 0), (4 * i + 4, 4), (4 * i, 4)]
+            box = [(x + right if x == 4 * len(kinds) else x, y) for x, y in box]
+            zones.append(zone(f"{kind}_{i}", kind, box, [], [], objects if i == 0 else []))
+        return World({"zones": zones}, None, 0.30)
+    flush = [thing("flush", 2, 2) | {"type": toilet}] if toilet else []
+    return {0: storey(0.0, ["toilet", "hall", "office"], flush), 1: storey(beyond, ["office", "office", upper_type], [])}
+
+
+BUILDINGS = {
+    "storey_stands": [building(beyond=2.0)],
+    "toilets": [building(toilet=None), building(toilet="wc"), building(toilet=None, upper_type="bedroom")],
+}
+SOUND_BUILDINGS = [building(), building(beyond=1.0), building(toilet="wc", upper_type="bedroom")]
+
+
 def broken(world):
     return {b["rule"] for b in World(world, GRAPH, 0.30).broken}
 
 
 def main():
     missed = [f"the sound world is said to break {rule}" for rule in sorted(broken(SOUND))]
-    missed += [f"no break is tried for {rule}" for rule in RULES if rule not in BREAKS]
+    missed += [f"a sound building is said to break {b['rule']}" for sound in SOUND_BUILDINGS for b in check_building(sound)]
+    missed += [f"no break is tried for {rule}" for rule in RULES if rule not in BREAKS and rule not in BUILDINGS]
+    for rule, buildings in BUILDINGS.items():
+        missed += [f"{rule}, building {i}: not found" for i, b in enumerate(buildings, 1) if rule not in {x["rule"] for x in check_building(b)}]
     for rule, mutations in BREAKS.items():
         for number, mutate in enumerate(mutations, 1):
             world = copy.deepcopy(SOUND)
@@ -119,7 +142,7 @@ def main():
             found = broken(world)
             if rule not in found:
                 missed.append(f"{rule}, break {number}: found only {sorted(found)}")
-    tried = sum(map(len, BREAKS.values()))
+    tried = sum(map(len, [*BREAKS.values(), *BUILDINGS.values()]))
     print("\n".join(missed) or f"{tried} breaks of {len(RULES)} rules found, the sound world is clean")
     sys.exit(1 if missed else 0)
 

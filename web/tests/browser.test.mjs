@@ -222,6 +222,58 @@ async function openings(page, selector) {
   });
 }
 
+test("a box selects what stands in it, and why a thing stands where it does is said without jargon", { skip }, async () => {
+  const { page, context, faults } = await opened(browser, server.url);
+  await make(page);
+  const room = await page.locator('[data-room-id="patient_room_1"]').boundingBox();
+  await page.keyboard.down("Shift");
+  await drag(page, { x: room.x + 2, y: room.y + 2 }, { x: room.width - 4, y: room.height - 4 });
+  await page.keyboard.up("Shift");
+  const chosen = await page.locator("[data-object-id].chosen").evaluateAll((all) => all.map((e) => e.dataset.objectId));
+  assert.ok(chosen.length > 5, `${chosen.length} things`);
+  const inside = await page.locator("[data-object-id]").evaluateAll((all, box) => {
+    const isIn = (b) => b.x + b.width / 2 > box.x && b.x + b.width / 2 < box.x + box.width && b.y + b.height / 2 > box.y && b.y + b.height / 2 < box.y + box.height;
+    return all.filter((e) => isIn(e.querySelector(".outline").getBoundingClientRect())).map((e) => e.dataset.objectId);
+  }, { x: room.x + 2, y: room.y + 2, width: room.width - 4, height: room.height - 4 });
+  assert.deepEqual(chosen.toSorted(), inside.toSorted());
+  assert.ok(await page.getByTestId("undo").isDisabled(), "nothing moved");
+  const why = await page.getByTestId("why").innerText();
+  assert.match(why, /^Why here: this kind of room has it/);
+  assert.doesNotMatch(why, /furnishing line|_/);
+  sound(faults);
+  await context.close();
+});
+
+test("everyday things on the furniture are made more and fewer, the plan stays", { skip }, async () => {
+  const { page, context, faults } = await opened(browser, server.url);
+  await make(page, "flat in Ghent with 2 bedrooms and a living room");
+  const plan = () => page.evaluate(() => [...document.querySelectorAll('[data-testid="plan-svg"] :is(.walls, .openings) path')].map((p) => p.getAttribute("d")).join());
+  const things = () => page.locator("[data-object-id]").count();
+  const was = [await plan(), await things()];
+  await open(page, "furnish");
+  await page.getByTestId("clutter").selectOption({ label: "many" });
+  await page.locator(`${id("undo")}:not([disabled])`).waitFor({ timeout: 60_000 });
+  assert.equal(await plan(), was[0], "the plan is the same");
+  assert.ok((await things()) > was[1], `${await things()} things, before ${was[1]}`);
+  assert.equal(await page.locator(".locked").count(), 0, "nothing is locked by it");
+  await page.getByTestId("undo").click();
+  assert.deepEqual([await plan(), await things()], was);
+  sound(faults);
+  await context.close();
+});
+
+test("rules that buildings are judged by come before what simulators need, with their figures", { skip }, async () => {
+  const { page, context, faults } = await opened(browser, server.url);
+  await make(page);
+  await open(page, "rules");
+  const rows = await page.locator(`${id("rules-list")} [data-rule-id]`).evaluateAll((all) => all.map((row) => [row.dataset.ruleId, row.innerText]));
+  const at = (rule) => rows.findIndex(([name]) => name === rule);
+  assert.ok(at("hospital_de_corridor_width_corridor") >= 0 && at("hospital_de_corridor_width_corridor") < at("not_finite"));
+  assert.match(rows[at("hospital_de_corridor_width_corridor")][1], /\d m · at least [\d.]+ m/);
+  sound(faults);
+  await context.close();
+});
+
 test("a rule shows while a wall is dragged, and goes with undo", { skip }, async () => {
   const { page, context, faults } = await opened(browser, server.url);
   await make(page);
@@ -294,6 +346,17 @@ test("a world is opened by its link, and two tabs that change it are told", { sk
   await page.locator(`${id("notice")} button`, { hasText: "Take up that state" }).click();
   await saved(page);
   assert.equal(await drawn(page), await drawn(other.page));
+  // or one's own goes on top, and the other one is in the history
+  await remove(other.page);
+  await saved(other.page);
+  await remove(page);
+  await page.locator('[data-testid="saved"][data-saved="conflict"]').waitFor();
+  const mine = await drawn(page);
+  await page.locator(`${id("notice")} button`, { hasText: "Keep mine on top" }).click();
+  await saved(page);
+  assert.equal(await drawn(page), mine);
+  await open(page, "library");
+  await page.locator(`[data-world-id="${worldId}"]`, { hasText: "state 4" }).waitFor();
   sound([...faults, ...other.faults]);
   await other.context.close();
   await context.close();
@@ -357,12 +420,16 @@ const unfold = {
   rooms: async (page) => {
     await page.locator("[data-bubble-id]").first().click();
     await page.getByTestId("room-card").waitFor();
+    // a ring in the meters of the drawing would cover its neighbors
+    await page.locator("[data-bubble-id]").first().press("Enter");
+    assert.equal(await page.locator("[data-bubble-id]").first().evaluate((e) => getComputedStyle(e).outlineStyle), "none");
   },
   people: async (page) => {
     await page.getByTestId("minutes").fill("1");
     await page.getByTestId("simulate").click();
     await page.getByTestId("crowd-figures").waitFor();
     await page.getByTestId("play").click();
+    await page.getByTestId("person").first().locator("summary").click();
   },
   rules: async (page) => {
     await page.getByTestId("own-rules").locator("summary").click();

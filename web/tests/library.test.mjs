@@ -17,6 +17,12 @@ test("many worlds are made while one watches, and one of them is opened", { skip
   await page.getByTestId("batch-start").click();
   await page.locator('[data-job-id][data-state="done"]').waitFor({ timeout: 120_000 });
   assert.match(await page.locator("[data-job-id]").innerText(), /3 of 3 sound/);
+  // what was written down, and all of it in one archive
+  await page.getByTestId("job-log").click();
+  await page.locator('[data-testid="job-lines"] li').first().waitFor();
+  const [archive] = await Promise.all([page.waitForEvent("download", { timeout: 120_000 }), page.getByTestId("batch-download").click()]);
+  const files = readFileSync(await archive.path()).toString("latin1");
+  for (const seed of [0, 1, 2]) for (const name of ["world.json", "report.json", "plan.svg"]) assert.ok(files.includes(`world-${seed}/${name}`), `${seed} ${name}`);
   await page.getByTestId("batch-worlds").click();
   await page.locator('[data-seed="2"]').waitFor();
   assert.equal(await page.locator("[data-seed]").count(), 3);

@@ -37,6 +37,7 @@ await open("rooms");
 await page.locator("[data-bubble-id]").nth(1).click();
 await shot("rooms");
 await open("people");
+await shot("tasks");
 await page.getByTestId("simulate").click();
 await page.getByTestId("crowd-figures").waitFor();
 await page.getByTestId("play").click();

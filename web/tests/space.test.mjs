@@ -55,6 +55,13 @@ test("the view in space has colors, and a door opens", { skip }, async () => {
   await page.waitForTimeout(600);
   await page.keyboard.up("w");
   await page.getByTestId("night").click();
+  // without a keyboard one walks while a button is held
+  const here = await still(page);
+  await page.getByTestId("go-s").hover();
+  await page.mouse.down();
+  await page.waitForTimeout(600);
+  await page.mouse.up();
+  assert.notEqual((await still(page)).sum, here.sum);
   calm(faults);
   await context.close();
 });

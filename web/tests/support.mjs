@@ -22,6 +22,9 @@ export const skip = executable ? false : "no browser is here";
 const PAGE = process.env.D3DGEN_PAGE;
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml" };
 
+/** Servers that were not removed yet: those of tests that failed too. */
+const running = new Set();
+
 /** A `d3dgen serve` with a folder of its own. */
 export class Server {
   #child;
@@ -33,6 +36,7 @@ export class Server {
     const config = join(this.#home, "server.toml");
     writeFileSync(config, `version = 1\nlog_level = "error"\n${settings}`);
     const flags = ["serve", "--config", config, "--listen", `127.0.0.1:${this.#port}`, "--data-dir", join(this.#home, "data")];
+    running.add(this);
     this.#child = spawn(PROGRAM, flags, { stdio: ["ignore", "pipe", "inherit"], env: { ...process.env, D3DGEN_STORE: "" } });
     for await (const line of createInterface(this.#child.stdout)) {
       const address = /^listening on .*:(\d+)$/.exec(line);
@@ -49,12 +53,14 @@ export class Server {
 
   /** Ends the server as a power cut would. */
   async kill() {
+    if (this.#child.exitCode !== null || this.#child.signalCode !== null) return;
     const ended = new Promise((done) => this.#child.once("exit", done));
     this.#child.kill("SIGKILL");
     await ended;
   }
 
   async remove() {
+    running.delete(this);
     await this.kill();
     rmSync(this.#home, { recursive: true, force: true });
   }
@@ -77,7 +83,7 @@ export function withBrowserAndServer() {
   });
   after(async () => {
     await browser?.close();
-    await server?.remove();
+    await Promise.all([...running].map((one) => one.remove()));
   });
 }
 
@@ -99,11 +105,17 @@ function fileOf(address) {
 
 /** Answers with a file of the folder, under the policy that the server sends with its own page. */
 async function show(route) {
-  const path = fileOf(new URL(route.request().url()));
-  const own = await route.fetch({ url: new URL("/", route.request().url()).href });
-  const policy = own.headers()["content-security-policy"] ?? "";
-  const headers = { "content-type": TYPES[extname(path)], "content-security-policy": policy };
-  await route.fulfill({ body: readFileSync(path), headers });
+  const address = new URL(route.request().url());
+  const path = fileOf(address);
+  const headers = { "content-type": TYPES[extname(path)], "content-security-policy": await policyOf(address.origin) };
+  // a page that was closed meanwhile wants no answer
+  await route.fulfill({ body: readFileSync(path), headers }).catch(() => {});
+}
+
+const policies = new Map();
+function policyOf(origin) {
+  if (!policies.has(origin)) policies.set(origin, fetch(origin).then((own) => own.headers.get("content-security-policy") ?? ""));
+  return policies.get(origin);
 }
 
 async function watch(context, faults) {

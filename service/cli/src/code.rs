@@ -64,9 +64,9 @@ fn domain(error: &DomainError) -> &'static str {
 
 fn stage(error: &StageError) -> &'static str {
     match error {
-        StageError::Refused { .. } => "request.refused",
+        StageError::Refused { .. } | StageError::UnknownBuilding { .. } => "request.refused",
         StageError::Mismatch { .. } => "documents.mismatch",
-        StageError::Infeasible { .. } => "request.infeasible",
+        StageError::Infeasible { .. } | StageError::Breaks { .. } => "request.infeasible",
         StageError::Cancelled => "interrupted",
     }
 }

@@ -6,6 +6,10 @@ use d3dgen_model::trajectory::{Goal, Pause, Sample, Track};
 
 use crate::routes::Leg;
 
+/// Share of its time from which on somebody begins no pause, and the share that it may have stood at the end of one.
+const MOST_STOOD: f64 = 0.3;
+const MOST_STOOD_AT_LAST: f64 = 0.48;
+
 /// A piece of what somebody does.
 #[derive(Debug, Clone)]
 pub struct Task {
@@ -236,11 +240,13 @@ impl Mover {
         self.pauses.last().is_some_and(|p| p.to == f64::MAX)
     }
 
-    /// Returns the share of its time that it stood on purpose, seats and beds left out.
-    pub fn paused_share(&self, t: f64) -> f64 {
+    /// Returns true where it may stand on purpose for so many seconds more: who stands most of its time is in a crowd, and what
+    /// it does there is no choice. Seats and beds are left out.
+    pub fn may_stand(&self, t: f64, seconds: f64) -> bool {
         let stood = self.pauses.iter().filter(|p| !matches!(p.kind, "seat" | "bed"));
-        let since = self.samples.first().map_or(t, |s| s.t);
-        stood.map(|p| p.to.min(t) - p.from).sum::<f64>() / (t - since).max(1.0)
+        let stood: f64 = stood.map(|p| p.to.min(t) - p.from).sum();
+        let there = t - self.samples.first().map_or(t, |s| s.t);
+        stood <= MOST_STOOD * there.max(1.0) && stood + seconds <= MOST_STOOD_AT_LAST * (there + seconds)
     }
 
     pub fn begin_pause(&mut self, t: f64, kind: &'static str) {

@@ -222,6 +222,7 @@ pub fn world() -> World {
             routes: Vec::new(),
             jobs: Vec::new(),
             dock: None,
+            locked: false,
         }],
         ..Scenario::empty(7)
     };

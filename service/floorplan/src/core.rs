@@ -25,7 +25,7 @@ pub(crate) struct Core {
     pub depth: i32,
     /// Second stairwell, at the other end of a building of wings, and its width.
     pub far: Option<(usize, i32)>,
-    /// True where the second stairwell stands at the end of the one corridor, outside of the last rooms: a storey is one bar.
+    /// True where the second stairwell stands at the other end of the row of rooms that the core begins: a storey is one bar.
     pub gable: bool,
     /// Length of the longest storey of such a building, about: the second stairs stand no nearer, lattice units.
     pub least: i32,

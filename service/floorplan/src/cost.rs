@@ -54,8 +54,13 @@ const FOR_GUESTS: f64 = 1.8;
 /// Way from a bedroom to the nearest station of a ward from which on it is far, m, and what a meter more of it counts.
 const NEAR_STATION_M: f64 = 20.0;
 const FAR_FROM_STATION: f64 = 0.15;
-/// What a building that is to be compact pays for the share of the rectangle around it that it leaves open.
+/// What a building that is to be compact pays for the share of the rectangle around it that it leaves open; the part of that which
+/// one pays that stands between neighbors, and any other along one straight corridor.
 const NOTCHED: f64 = 30.0;
+const NOTCHED_IN_ROW: f64 = 1.0;
+const NOTCHED_BAR: f64 = 0.4;
+/// What each gate for vehicles costs that lies at another side of the building than most of its kind.
+const GATES_APART: f64 = 8.0;
 /// Number of soft terms.
 const COUNT: usize = 12;
 /// A weight for each soft term.
@@ -147,7 +152,7 @@ pub(crate) struct Score {
     pub overhang: f64,
     /// How far a wing reaches where others are to stand, m.
     pub pushed: f64,
-    /// Share of the rectangle around it that a building leaves open which is to be compact.
+    /// Share of the rectangle around it that a building leaves open, as far as that counts.
     pub open: f64,
     /// What the plan costs under a wish for symmetry or against it, weighted.
     pub symmetry: f64,
@@ -210,6 +215,8 @@ pub(crate) struct Judge<'b> {
     pub(crate) beds: Vec<usize>,
     pub(crate) stations: Vec<usize>,
     home: bool,
+    /// Rooms of one type with gates for vehicles, where there are several.
+    docks: Vec<Vec<usize>>,
     /// By room: whether another one belongs to it.
     hosts: Vec<bool>,
     pub(crate) survey: Survey,
@@ -242,6 +249,8 @@ pub(crate) struct Measured {
     outer: (i32, i32),
     /// The longest straight piece that a door to outdoors can be in.
     way_in: i32,
+    /// Outer wall on each side, the longest straight piece of it.
+    facades: [i32; 4],
     gross_m2: f64,
     pub(crate) net_m2: f64,
     /// Largest box.
@@ -272,6 +281,7 @@ impl<'b> Judge<'b> {
             beds: (0..n).filter(|&r| brief.rooms[r].zone == Zone::Night && brief.rooms[r].on_spine).collect(),
             stations: (0..n).filter(|&r| brief.rooms[r].zone == Zone::Staff && brief.rooms[r].open_front).collect(),
             home: brief.is_home(),
+            docks: brief.docks(),
             hosts: (0..n).map(|i| brief.rooms.iter().any(|r| r.host == Some(i))).collect(),
             survey: Survey { rooms: vec![Measured::default(); n], ..Survey::default() },
             below: brief.core.as_ref().and_then(|c| c.below.as_ref()),
@@ -418,8 +428,10 @@ impl<'b> Judge<'b> {
             for (axis, sides) in [[side[0], side[1]], [side[2], side[3]]].into_iter().enumerate() {
                 let len = if axis == 0 { shape.height() } else { shape.width() };
                 let (mut outer, mut inner) = (0, 0);
-                for [shared, own] in sides {
+                for (end, [shared, own]) in sides.into_iter().enumerate() {
                     let free = len - shared;
+                    let facade = &mut room.facades[2 * axis + end];
+                    *facade = free.max(*facade);
                     survey.steps += usize::from(shared > 0 && (1..up(STEP_M)).contains(&free));
                     room.outer.1 += free;
                     // a wall of neighbors has no window; the way in may be there
@@ -613,15 +625,22 @@ impl<'b> Judge<'b> {
             let boxes: Vec<_> = rooms.iter().filter_map(|r| Some((r.main?, r.gross_m2))).collect();
             score.symmetry = mirror::cost(wish, &boxes, door);
         }
-        if brief.compact && brief.form.is_none() {
+        let rectangular = match (brief.compact, brief.party) {
+            (true, _) => 1.0,
+            (_, Some(_)) => NOTCHED_IN_ROW,
+            _ if layout.bar => NOTCHED_BAR,
+            _ => 0.0,
+        };
+        if rectangular > 0.0 && brief.form.is_none() {
             let around = layout.boxes.iter().map(|(_, b)| *b).reduce(Cellbox::around);
-            score.open = around.map_or(0.0, |all| 1.0 - total / all.area_m2());
+            score.open = rectangular * around.map_or(0.0, |all| 1.0 - total / all.area_m2());
         }
         // one station stands where it sees most doors; several share the beds out
         if self.stations.len() > 1 {
             let far = self.ways_to_stations(layout).map(|way| (way - NEAR_STATION_M).max(0.0));
             score.soft[7] += FAR_FROM_STATION * far.sum::<f64>();
         }
+        score.soft[7] += GATES_APART * self.gates_apart() as f64;
         let size = total.sqrt().max(1.0);
         // from a hall guests go to the room where they sit: at which end of it one comes in is not known yet
         let in_hall = brief.rooms.iter().position(|r| r.entrance) == brief.spine;
@@ -673,6 +692,18 @@ impl<'b> Judge<'b> {
             let stations = self.stations.iter().filter_map(place);
             stations.map(|station| walk(round, bed, station)).reduce(f64::min)
         })
+    }
+
+    /// Returns how many gates for vehicles are not at the side of the building that most of their kind are at: lorries have one yard.
+    fn gates_apart(&self) -> usize {
+        let holds = |room: usize, side: usize| {
+            self.survey.rooms[room].facades[side] >= up(self.brief.rooms[room].least_outer_wall())
+        };
+        let most = |rooms: &Vec<usize>| {
+            let at = |side| rooms.iter().filter(|room| holds(**room, side)).count();
+            rooms.len() - (0..4).map(at).max().unwrap_or(0)
+        };
+        self.docks.iter().map(most).sum()
     }
 
     /// Returns the share of the long walls of the corridor that are outer walls.

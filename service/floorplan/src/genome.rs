@@ -94,6 +94,9 @@ const BOTH_SIDES: RangeInclusive<usize> = 20..=32;
 pub(crate) const WEST_BAND: usize = 4;
 pub(crate) const EAST_BAND: usize = 5;
 
+/// Band whose last cell lies in the inner corner of an angle.
+const BEND_BAND: usize = 0;
+
 /// A row of cells along one side of a corridor.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Band {
@@ -234,6 +237,24 @@ impl Genome {
             let cells = &mut self.bands[n % 2].cells;
             cells.insert(cells.len() / 2, station);
         }
+    }
+
+    /// Moves the one station of a plan with two arms to the inner corner of its corridor, from where one sees along both; returns
+    /// false where there is no such station, or it is there.
+    pub(crate) fn set_station_in_bend(&mut self, brief: &Brief) -> bool {
+        let is_station = |c: &Cell| brief.rooms[c.host].zone == Zone::Staff && brief.rooms[c.host].open_front;
+        let mut stations = self.bands.iter().enumerate().flat_map(|(b, band)| {
+            band.cells.iter().enumerate().filter(|(_, c)| is_station(c)).map(move |(c, _)| (b, c))
+        });
+        let (Scheme::Angle, Some((band, at)), None) = (self.scheme, stations.next(), stations.next()) else {
+            return false;
+        };
+        if band == BEND_BAND && at + 1 == self.bands[band].cells.len() {
+            return false;
+        }
+        let station = self.bands[band].cells.remove(at);
+        self.bands[BEND_BAND].cells.push(station);
+        true
     }
 
     fn choose_caps(&mut self, brief: &Brief, free: &mut Vec<usize>, rng: &mut Stream) {

@@ -81,7 +81,9 @@ pub(crate) fn put_in_order(
             break;
         }
         trial.clone_from(&current);
-        if !mutate(brief, &mut trial, rng) {
+        // first of all to the place from which one sees most
+        let changed = if n == 0 { trial.set_station_in_bend(brief) } else { mutate(brief, &mut trial, rng) };
+        if !changed {
             continue;
         }
         let (score, disorder) = look(&trial, &mut layout);

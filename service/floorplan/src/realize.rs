@@ -7,7 +7,7 @@ use d3dgen_model::measures::JAMB_M;
 use d3dgen_model::style::Form;
 
 use super::core::Comb;
-use super::genome::{Cap, Cell, Cover, EAST_BAND, Genome, WEST_BAND};
+use super::genome::{CORE_BAND, Cap, Cell, Cover, EAST_BAND, Genome, WEST_BAND};
 use super::lattice::{Cellbox, Frame, INNER_HALF_M, OUTER_HALF_M, meters, nearest, up};
 use super::spec::Brief;
 
@@ -52,6 +52,8 @@ pub(crate) struct Layout {
     pub misfit: f64,
     /// Total length of notches, m.
     pub notch: f64,
+    /// True where all rooms lie along one straight corridor: nothing but the sizes of rooms is a reason for a notch.
+    pub bar: bool,
     /// How much too long a corridor with one way out is, m.
     pub one_way: f64,
     /// Where the core is: its corner at the corridor, along the corridor, away from it.
@@ -152,6 +154,7 @@ pub(crate) fn realize(brief: &Brief, genome: &Genome, scratch: &mut Scratch, lay
     layout.boxes.clear();
     (layout.misfit, layout.notch, layout.one_way, layout.core) = (0.0, 0.0, 0.0, None);
     (layout.far, layout.round) = (None, None);
+    layout.bar = matches!(genome.scheme, Scheme::Straight | Scheme::Capped);
     scratch.spans.clear();
     let Some(spine) = brief.spine else { return };
     let mut task = Task { brief, genome, spine, scratch, misfit: 0.0, layout };
@@ -179,7 +182,10 @@ fn straight(task: &mut Task<'_, '_>) {
         })
     };
     let (et, eb) = (extra(true), extra(false));
-    let top = Row::new(task, 0, et[0] + et[1]);
+    // the second stairs close the row that the core begins
+    let gable = brief.core.as_ref().filter(|c| c.gable).and_then(|c| Some((c, c.far?.1)));
+    let stairs = gable.map_or(0, |(_, width)| width);
+    let top = Row::new(task, CORE_BAND, et[0] + et[1] - stairs);
     let bottom = Row::new(task, 1, eb[0] + eb[1]);
     let mut len = solve(&[&top, &bottom], &mut task.misfit);
     // of rows that cannot be as long as each other, the longer one is as long as it wants to be where it carries a storey
@@ -188,9 +194,8 @@ fn straight(task: &mut Task<'_, '_>) {
         let wish = (top.sum.target - top.offset).max(bottom.sum.target - bottom.offset);
         len = within(&[&top, &bottom], wish).unwrap_or(len);
     }
-    let gable = brief.core.as_ref().filter(|c| c.gable && c.far.is_some());
-    if let Some(core) = gable {
-        let wish = core.below.as_ref().and_then(|b| b.far).unwrap_or(len.max(core.least));
+    if let Some((core, width)) = gable {
+        let wish = core.below.as_ref().and_then(|b| b.far).map_or(len.max(core.least), |far| far + width);
         len = within(&[&top, &bottom], wish).unwrap_or(len);
     }
     if brief.hub {
@@ -206,7 +211,7 @@ fn straight(task: &mut Task<'_, '_>) {
         // the spine that the wing hangs on
         task.spine_box(Cellbox::new(-w, -db, 0, w + dt));
     }
-    fill(task, &top.at((-et[0], w), (1, 0), (0, 1)), len + et[0] + et[1]);
+    fill(task, &top.at((-et[0], w), (1, 0), (0, 1)), len + et[0] + et[1] - stairs);
     fill(task, &bottom.at((-eb[0], 0), (1, 0), (0, -1)), len + eb[0] + eb[1]);
     if gable.is_some() {
         second_stairs(task, len, w);
@@ -220,7 +225,7 @@ fn straight(task: &mut Task<'_, '_>) {
     }
 }
 
-/// Sets the second stairwell at the end of the corridor that the core is not at, where that of the storey below is.
+/// Sets the second stairwell at the end of the row that the core begins, where that of the storey below is.
 fn second_stairs(task: &mut Task<'_, '_>, len: i32, w: i32) {
     let Some(core) = task.brief.core.as_ref() else { return };
     let (Some((stairs, width)), Some(frame)) = (core.far, task.layout.core) else { return };
@@ -228,17 +233,17 @@ fn second_stairs(task: &mut Task<'_, '_>, len: i32, w: i32) {
     let place = |cells: &[Cell]| cells.iter().position(|c| c.host == core.host);
     let before = task.genome.bands.iter().filter_map(|b| place(&b.cells)).sum::<usize>();
     task.misfit += AT_END * before as f64 + if task.genome.caps.iter().any(Option::is_some) { AT_END } else { 0.0 };
-    let end = len - frame.origin.0;
+    let end = len - width - frame.origin.0;
     let from = core.below.as_ref().and_then(|b| b.far).unwrap_or(end);
-    // rooms beyond the stairs, or a corridor that goes on alone to them
+    // rooms where the stairs are, or a corridor that goes on alone to them
     let gap = meters(from - end);
     task.misfit += (-gap).max(0.0) + if gap > 0.0 { gap.min((MIN_NOTCH_M - gap).max(0.0)) } else { 0.0 };
     task.layout.notch += 2.0 * gap.max(0.0);
     if gap > 0.0 {
-        let reach = frame.origin.0 + from;
+        let reach = frame.origin.0 + from + width;
         task.spine_box(Cellbox::new(len, 0, reach, w));
     }
-    let shape = frame.place(from, from + core.depth, -width, 0);
+    let shape = frame.place(from, from + width, 0, core.depth);
     task.layout.boxes.push((stairs, shape));
     task.layout.far = Some(from);
 }

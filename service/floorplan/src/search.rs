@@ -145,6 +145,9 @@ pub(crate) fn search_with(
     judge.below = judge.below.or(below);
     let tiny = brief.rooms.len() <= TINY;
     let (own_runs, more) = if tiny { (OWN_RUNS / 2, MAX_RUNS / 2) } else { (OWN_RUNS, MORE) };
+    // what a hall takes of a storey of a home, or of a plot between neighbors, depends most on how the rooms lie along it
+    let compared = brief.party.is_some() || brief.of_home && brief.core.is_some();
+    let own_runs = if compared && !tiny { 1 } else { own_runs };
     for run in 0..MAX_RUNS {
         // The first choice of the seed gets most runs; the others step in when it does not work out.
         let scheme = if run < own_runs { schemes.first() } else { schemes.get(run % schemes.len().max(1)) };

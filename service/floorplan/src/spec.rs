@@ -253,7 +253,7 @@ impl Brief {
         if !units.is_empty() {
             rooms.iter_mut().for_each(|spec| spec.unit = spec.unit.or(Some(0)));
         }
-        let hard_width = max_limit(domain.circulation.width_m, limits.corridor_width.as_ref());
+        let hard_width = limits.corridor_m(&domain.circulation);
         // a home with stairs has little floor left for wide halls, unless somebody turns a wheelchair there
         let of_home = !graph.links.is_empty() && is_for_homes(domain);
         let most_advised = if of_home && !graph.accessible { MOST_ADVISED_WITH_STAIRS } else { MOST_ADVISED_WIDTH };
@@ -282,7 +282,7 @@ impl Brief {
             mirrored: graph.style.symmetry == Some(Symmetry::Symmetric),
             form: graph.style.form,
             compact: graph.style.space == Some(SpaceStyle::Compact),
-            entrance_width: max_limit(domain.circulation.entrance_width_m, limits.entrance_width.as_ref()).max(fitted),
+            entrance_width: limits.entrance_m(&domain.circulation).max(fitted),
             court_width: domain.circulation.court_width_m,
             conflicts,
             guests: Vec::new(),
@@ -484,6 +484,17 @@ impl Brief {
             return;
         }
         self.links.push(Link { a, b, connector, required });
+    }
+
+    /// Returns the rooms of one type that vehicles come to by gates of their own, for each type with several.
+    pub(crate) fn docks(&self) -> Vec<Vec<usize>> {
+        let mut docks: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        for (room, spec) in self.rooms.iter().enumerate() {
+            if spec.gate.is_some() && !spec.is_gate_by_hand() {
+                docks.entry(&spec.room_type).or_default().push(room);
+            }
+        }
+        docks.into_values().filter(|rooms| rooms.len() > 1).collect()
     }
 
     /// Returns true for buildings that people live in: they sleep there, and nobody works or is received.

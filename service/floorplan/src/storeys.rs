@@ -18,7 +18,7 @@ use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, meters, nearest};
 use super::party::Party;
 use super::search::search;
 use super::spec::{Brief, RoomSpec};
-use super::{ATTEMPTS, LONGEST_BAR, schemes};
+use super::{ATTEMPTS, LONGEST_BAR, net_area_m2, schemes};
 
 /// Share of a storey that may jut out over the one below without a word.
 pub(crate) const OVERHANG_SHARE: f64 = 0.06;
@@ -28,12 +28,18 @@ const FEW_PLANS: usize = 3;
 /// Plans of a storey that are compared when the first ones jut out further.
 const COMPARED: usize = 6;
 const COMPARED_LARGE: usize = 2;
-/// How often a home is stacked at most, what a share of a storey counts that the one above leaves open beside one that juts
-/// out, and how ragged a stack may be that is taken at once.
+/// How often a home is stacked at most, what a share of a storey counts that juts out, and one that the storey above leaves open,
+/// and how ragged a stack of short ways may be that is taken at once.
 const STACKS: usize = 4;
 /// The same of other buildings that are no wings, where a storey juts out further than it may without a word.
 const STACKS_OF_OTHERS: usize = 3;
+const JUTS: f64 = 3.0;
 const SET_BACK: f64 = 0.3;
+/// Share of a storey of a home that is hall and stairs from which on that counts too, what more of it counts, and what the share
+/// of the rectangle around it counts that it leaves open.
+const USUAL_WAY: f64 = 0.2;
+const LONG_WAY: f64 = 0.6;
+const NOTCHED: f64 = 0.3;
 const WELL_STACKED: f64 = 0.06;
 /// Longest storey, about, that is one bar between two stairs, m: others walk less in wings.
 const LONGEST_BAR_M: f64 = 64.0;
@@ -52,6 +58,18 @@ struct Planned {
     overhang: f64,
     /// Share of the storey below that it leaves open.
     set_back: f64,
+    /// Share of it that is hall and stairs.
+    way: f64,
+    /// Share of the rectangle around it that it leaves open.
+    open: f64,
+}
+
+impl Planned {
+    /// Returns how ragged it makes a stack of storeys, of a home how much of it is ways too.
+    fn ragged(&self, home: bool) -> f64 {
+        let way = if home { LONG_WAY * (self.way - USUAL_WAY).max(0.0) + NOTCHED * self.open } else { 0.0 };
+        JUTS * self.overhang + SET_BACK * self.set_back + way
+    }
 }
 
 /// Plans a building of several storeys.
@@ -167,7 +185,7 @@ fn bar_length(brief: &Brief) -> i32 {
         if is_nestable(brief, i) { 0.5 * front } else { front }
     });
     let fronts: Vec<f64> = fronts.collect();
-    let core = brief.core.as_ref().map_or(0.0, |c| meters(c.width));
+    let core = brief.core.as_ref().map_or(0.0, |c| meters(c.width + c.far.map_or(0, |far| far.1)));
     let half = (core + fronts.iter().sum::<f64>()) / 2.0;
     nearest(fronts.into_iter().fold(half, f64::max))
 }
@@ -194,7 +212,7 @@ impl Plan<'_> {
             let done = match self.stack(briefs, n, stop) {
                 Ok(stack) => {
                     let juts = stack.iter().any(|p| p.overhang > OVERHANG_SHARE && p.below.comb.is_none());
-                    let ragged = stack.iter().map(|p| p.overhang + SET_BACK * p.set_back).sum::<f64>();
+                    let ragged = stack.iter().map(|p| p.ragged(homes)).sum::<f64>();
                     if best.as_ref().is_none_or(|b| ragged < b.0) {
                         best = Some((ragged, stack));
                     }
@@ -315,7 +333,8 @@ fn storey(
                 let overhang = found.score.overhang;
                 let set_back = set_back(&brief, &boxes);
                 if best.as_ref().is_none_or(|b| overhang < b.overhang) {
-                    best = Some(Planned { plan, below, overhang, set_back });
+                    let (way, open) = (way_share(&plan), open_share(&boxes));
+                    best = Some(Planned { plan, below, overhang, set_back, way, open });
                 }
                 compared += 1;
                 let most = if comb_built { COMPARED_LARGE } else { COMPARED };
@@ -329,6 +348,18 @@ fn storey(
         }
     }
     best.ok_or(last)
+}
+
+/// Returns the share of the net floor of a plan that is hall, corridor and stairs.
+fn way_share(plan: &Floorplan) -> f64 {
+    let ways = plan.rooms.iter().filter(|r| r.circulation).map(|r| r.net_area_m2);
+    ways.sum::<f64>() / net_area_m2(plan).max(1.0)
+}
+
+/// Returns the share of the rectangle around some boxes that they leave open.
+fn open_share(boxes: &[(usize, Cellbox)]) -> f64 {
+    let around = boxes.iter().map(|b| b.1).reduce(Cellbox::around).map_or(1.0, |all| all.area_m2());
+    1.0 - boxes.iter().map(|b| b.1.area_m2()).sum::<f64>() / around
 }
 
 /// Returns the boxes of rooms that people sleep, live or work in.

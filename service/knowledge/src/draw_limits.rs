@@ -32,6 +32,7 @@ pub(crate) fn draw(constraints: &[Applicable], all: &[Applicable], chain: &[Stri
     let wished = self::usable(all);
     let pick = |wanted: &dyn Fn(&Applicable, &Rule) -> Option<f64>| strictest(&usable, chain, query, wanted);
     let mut limits = Limits {
+        no_beds: !query.rooms.iter().any(|r| r.beds),
         corridor_width: pick(&|a, r| {
             (r.quantity.measure == Measure::CirculationWidth && is_circulation(a, query)).then_some(r.bounds.min?)
         }),

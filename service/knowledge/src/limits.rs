@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use d3dgen_model::domain::Circulation;
 use d3dgen_model::scene_graph::{Robot, SceneGraph};
 
 use crate::aims::ObjectAims;
@@ -9,6 +10,8 @@ use crate::aims::ObjectAims;
 /// Figures for the floorplan stage: the strictest of what applies, hard unless called advised.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Limits {
+    /// True where no bed on wheels goes through the building: it has narrower ways.
+    pub no_beds: bool,
     /// Least clear width of circulation, m.
     pub corridor_width: Option<Limit>,
     /// Width that advice asks of circulation beyond the hard figure, m; a wish.
@@ -31,6 +34,16 @@ pub struct Limits {
 const PASSING_M: f64 = 0.1;
 
 impl Limits {
+    /// Returns the clear width that circulation has by the domain and by the rules, m.
+    pub fn corridor_m(&self, circulation: &Circulation) -> f64 {
+        circulation.width_m(!self.no_beds).max(self.corridor_width.as_ref().map_or(0.0, |l| l.value))
+    }
+
+    /// Returns the clear width that the entrance has by the domain and by the rules, m.
+    pub fn entrance_m(&self, circulation: &Circulation) -> f64 {
+        circulation.entrance_width_m(!self.no_beds).max(self.entrance_width.as_ref().map_or(0.0, |l| l.value))
+    }
+
     /// Returns the width of circulation in which two of a graph's robots pass each other, m; 0 where they need not.
     pub fn two_way_m(&self, graph: &SceneGraph) -> f64 {
         let widest = graph.robots.iter().map(Robot::width_m).reduce(f64::max).filter(|_| graph.is_two_way());

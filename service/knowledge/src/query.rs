@@ -1,7 +1,8 @@
 //! What is asked of a knowledge base: a building, where it stands, its rooms and its robots.
 
 use crate::figure::Facts;
-use d3dgen_model::domain::{Daylight, Domain, Shape, Zone};
+use d3dgen_model::domain::{Daylight, Domain, Zone};
+use d3dgen_model::offer::rolls_beds;
 use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::scene_graph::{Robot, SceneGraph};
 
@@ -113,7 +114,6 @@ impl QueryRoom {
     /// Returns what rules may ask about `count` rooms of a type, whose area is at most the usual.
     pub(crate) fn of(room_type: &str, count: u32, domain: &Domain) -> Self {
         let kind = domain.room_type_or_generic(room_type);
-        let on_wheels = |item: &str| domain.anchor(item).is_some_and(|o| o.shape == Shape::HospitalBed);
         Self {
             room_type: room_type.to_owned(),
             // the spaces of the generic room type say nothing about a room that only the prompt names
@@ -122,7 +122,7 @@ impl QueryRoom {
             circulation: domain.circulation.room_type == room_type,
             zone: kind.zone,
             daylight: kind.daylight,
-            beds: kind.furnishing.iter().any(|f| f.min > 0 && on_wheels(&f.item)),
+            beds: rolls_beds(domain, kind),
             area_max_m2: kind.area_m2.max,
         }
     }

@@ -92,9 +92,35 @@ pub enum Edit {
         /// The room.
         room_id: String,
     },
+    /// Changes a job of a robot: where it goes, in which turn, what it carries. Its routes follow; later changes leave it.
+    ChangeJob {
+        /// The robot.
+        robot_id: String,
+        /// Its job.
+        job_id: String,
+        /// Point where it loads; as it is when absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        from: Option<String>,
+        /// Points it goes to, in turn; as they are when there are none.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        to: Vec<String>,
+        /// Mass of what it carries, kg; as it is when absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        load_kg: Option<f64>,
+        /// Time it stops at each point, s; as it is when absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        seconds: Option<f64>,
+    },
+    /// Puts the steps of a person in another turn; those that are not named are left out. Later changes leave them.
+    ChangeSteps {
+        /// The person.
+        agent_id: String,
+        /// The steps that stay, in their new turn.
+        steps: Vec<StepKept>,
+    },
     /// Pins parts, so that later changes leave them as they are, or frees them.
     Lock {
-        /// Ids of rooms, walls, doors, windows or placements.
+        /// Ids of rooms, walls, doors, windows, placements, or of robots and people, which keep what they do.
         ids: Vec<String>,
         /// True to pin.
         locked: bool,
@@ -103,6 +129,22 @@ pub enum Edit {
         contents: bool,
     },
 }
+
+/// A step of a person that stays.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StepKept {
+    /// Its number so far, from 1.
+    pub number: u32,
+    /// How long it takes, s; as it is when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
+}
+
+/// Longest time of a step or a stop, s: a day.
+const LONGEST_S: f64 = 86_400.0;
+/// Largest mass that a robot is given to carry, kg.
+const HEAVIEST_KG: f64 = 10_000.0;
 
 impl Document for Edits {
     const KIND: &'static str = "edits";
@@ -136,6 +178,15 @@ impl Document for Edits {
                             format!("/edits/{i}/yaw_rad"),
                             "is not a multiple of a quarter turn (1.5708 rad)",
                         ));
+                    }
+                }
+                Edit::ChangeJob { load_kg, seconds, .. } => {
+                    number("load_kg", load_kg.unwrap_or(0.0), 0.0, HEAVIEST_KG);
+                    number("seconds", seconds.unwrap_or(0.0), 0.0, LONGEST_S);
+                }
+                Edit::ChangeSteps { steps, .. } => {
+                    for (k, step) in steps.iter().enumerate() {
+                        number(&format!("steps/{k}/seconds"), step.seconds.unwrap_or(0.0), 0.0, LONGEST_S);
                     }
                 }
                 _ => {}

@@ -11,7 +11,7 @@ mod places;
 mod seats;
 mod wet;
 
-pub use beds::{other_bed, sleeps};
+pub use beds::{other_bed, rolls_beds, sleeps};
 pub use desks::{MOST_IN_TEAM, desks, desks_of, most_desks, works_in};
 pub use docks::{LAST_RANK, dock_rank, docks_held, docks_needed_m2, has_docks, most_docks, widest_circle_m};
 pub use places::{Places, places};

@@ -179,6 +179,9 @@ pub struct RobotTask {
     /// Storey it starts on.
     #[serde(default, skip_serializing_if = "is_ground")]
     pub level: i32,
+    /// True keeps its jobs when the scenario is made anew: a person set them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub locked: bool,
 }
 
 /// A leg of a robot's round on the free floor.
@@ -234,6 +237,9 @@ pub struct Agent {
     /// Storey of the start and the rooms.
     #[serde(default, skip_serializing_if = "is_ground")]
     pub level: i32,
+    /// True keeps its steps when the scenario is made anew: a person set them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub locked: bool,
 }
 
 impl Document for Scenario {

@@ -21,6 +21,34 @@ pub enum Error {
         /// Which rules clash, and the least change that would help.
         message: String,
     },
+    /// A change of a finished world leaves a hard rule broken, however what is around it is repaired.
+    #[error("{stage}: no solution found: {message}")]
+    Breaks {
+        /// Stage that gave up.
+        stage: &'static str,
+        /// Id of the first rule that would be broken.
+        rule: String,
+        /// Id of what would break it.
+        subject: String,
+        /// Rule and reason in words.
+        message: String,
+    },
+    /// The request names a kind of building that no domain knows, and nothing else to plan.
+    #[error(
+        "scene_graph: no domain knows a kind of building called `{name}`; the nearest are {}; there are kinds of the domains {}; \
+         name one, list the rooms that it has, or plan them with `--domain {fallback}`",
+        nearest.join(", "), domains.join(", ")
+    )]
+    UnknownBuilding {
+        /// What the request calls it.
+        name: String,
+        /// Kinds of building that are called most alike, best first.
+        nearest: Vec<String>,
+        /// Ids of the domains that there are.
+        domains: Vec<String>,
+        /// Id of the domain whose rooms suit most buildings.
+        fallback: String,
+    },
     /// A document handed in does not fit the others (a floorplan of another graph).
     #[error("{stage}: {message}")]
     Mismatch {

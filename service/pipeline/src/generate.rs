@@ -21,7 +21,7 @@ use d3dgen_plugins::{Plugin, Registry};
 
 use crate::placement::{Furnished, before_openings};
 use crate::scene_graph::Request;
-use crate::{brief, fit, floorplan, give_way, grow, placement, scenario, scene_graph, ways_out, world};
+use crate::{brief, fit, floorplan, give_way, grow, mend, placement, scenario, scene_graph, ways_out, world};
 
 /// How to make a world, beside the request itself.
 #[derive(Debug, Clone)]
@@ -50,6 +50,10 @@ const FEW_ATTEMPTS: u32 = 3;
 const FOR_OWN_ROBOT: u32 = 2;
 /// Attempts without any plan after which something gives way, where something can.
 const MOST_IN_VAIN: u32 = 4;
+/// Attempts that break the same rule at the same place, after which another one would too.
+const SAME_FAULTS: u32 = 3;
+/// How often a graph is mended for what its worlds break.
+const MENDS: usize = 2;
 /// Rooms of a storey up to which a sound world that misses a law, or with something before a door or window, is tried again:
 /// in a large building there is always one.
 const FEW_ROOMS: usize = 26;
@@ -168,21 +172,8 @@ pub fn furnish_and_check(
     let read = || brief::of_plan(&graph.prompt, settings.pinned_floorplan.as_ref(), registry);
     let settings = &Settings { brief: settings.brief.clone().or_else(read), ..settings.clone() };
     let mut made = |graph: &SceneGraph, settings: &Settings| {
-        let mut steps = give_way::steps(graph, plugin.domain()).peekable();
-        let mut outcome = attempts(graph, plugin, (settings, &mut || steps.peek().is_none()), observe, cancelled);
-        while is_in_vain(&outcome) {
-            let Some(step) = steps.next() else { break };
-            let next = attempts(&step, plugin, (settings, &mut || steps.peek().is_none()), observe, cancelled);
-            // a world that breaks a rule tells more than that there is none
-            let cancelled = matches!(next, Err(Error::Cancelled));
-            if outcome.is_err() || cancelled || !is_in_vain(&next) {
-                outcome = next;
-            }
-            if cancelled {
-                break;
-            }
-        }
-        outcome
+        let mut tries = Tries { plugin, settings, observe: &mut *observe, cancelled };
+        tries.with_less(graph)
     };
     let mut made = |graph: &SceneGraph, settings: &Settings| with_room(graph, plugin.domain(), settings, &mut made);
     if let Some(without) = fit::without_robots(graph) {
@@ -199,7 +190,59 @@ pub fn furnish_and_check(
         return made;
     }
     let few = Settings { attempts: FEW_ATTEMPTS, ..settings.clone() };
-    fit::or_refused(made, graph, &mut |graph| attempts(graph, plugin, (&few, &mut || true), &mut |_| (), cancelled))
+    fit::or_refused(made, graph, &mut |graph| attempts(graph, plugin, (&few, true), &mut |_| (), cancelled))
+}
+
+/// Looks for a world of a graph, and of what is left of it where something has to give way.
+struct Tries<'t, 'o> {
+    plugin: &'t dyn Plugin,
+    settings: &'t Settings,
+    observe: &'t mut (dyn FnMut(Event<'_>) + 'o),
+    cancelled: &'t AtomicBool,
+}
+
+impl Tries<'_, '_> {
+    /// Mends what the broken rules say, then gives up one thing after the other, then the rooms that still break a rule.
+    fn with_less(&mut self, graph: &SceneGraph) -> Result<Generated, Error> {
+        let domain = self.plugin.domain();
+        let mut tried = graph.clone();
+        let mut outcome = self.look(&tried, give_way::steps(graph, domain).next().is_none());
+        for _ in 0..MENDS {
+            let Some(mended) = self.broken_world(&outcome).and_then(|found| mend::mended(&tried, &found.report)) else {
+                break;
+            };
+            tried = mended;
+            outcome = better(outcome, self.look(&tried, false));
+        }
+        let from = tried.clone();
+        let mut steps = give_way::steps(&from, domain).peekable();
+        while is_in_vain(&outcome) {
+            let Some(step) = steps.next() else { break };
+            let next = self.look(&step, steps.peek().is_none());
+            tried = step;
+            outcome = better(outcome, next);
+        }
+        let found = self.broken_world(&outcome);
+        match found.and_then(|found| mend::without_broken(&tried, &found.world, &found.report)) {
+            Some(without) => better(outcome, self.look(&without, true)),
+            None => outcome,
+        }
+    }
+
+    fn look(&mut self, graph: &SceneGraph, is_last: bool) -> Result<Generated, Error> {
+        attempts(graph, self.plugin, (self.settings, is_last), self.observe, self.cancelled)
+    }
+
+    /// Returns the world that breaks rules, where none was found that does not and nothing that somebody drew is to be kept.
+    fn broken_world<'f>(&self, outcome: &'f Result<Generated, Error>) -> Option<&'f Generated> {
+        let pinned = self.settings.pinned_floorplan.is_some() || self.settings.pinned_placements.is_some();
+        outcome.as_ref().ok().filter(|_| !pinned && is_in_vain(outcome))
+    }
+}
+
+/// Returns the later of two outcomes, unless only the former has a world, which tells more than that there is none.
+fn better(former: Result<Generated, Error>, later: Result<Generated, Error>) -> Result<Generated, Error> {
+    if former.is_err() || matches!(later, Err(Error::Cancelled)) || !is_in_vain(&later) { later } else { former }
 }
 
 /// Returns true where something has to give way: there is no plan, or none that keeps the hard rules.
@@ -271,7 +314,7 @@ struct Faults {
 fn attempts(
     graph: &SceneGraph,
     plugin: &dyn Plugin,
-    (settings, is_last): (&Settings, &mut dyn FnMut() -> bool),
+    (settings, is_last): (&Settings, bool),
     observe: &mut dyn FnMut(Event<'_>),
     cancelled: &AtomicBool,
 ) -> Result<Generated, Error> {
@@ -281,6 +324,7 @@ fn attempts(
     let picky = !pinned && graph.rooms.len() <= (FEW_ROOMS * graph.level_numbers().len()).min(FEW_ON_STOREYS);
     let mut best: Option<(Faults, Generated)> = None;
     let mut reason = None;
+    let mut same = (None, 0);
     // the storeys of a building have to suit each other: that takes more attempts
     let most = settings.attempts.max(1) * if graph.links.is_empty() { 1 } else { 2 };
     for attempt in 0..most {
@@ -312,8 +356,14 @@ fn attempts(
                     _ => format!("breaks {broken} hard rule(s), first {first}"),
                 };
                 observe(Event::Rejected(attempt, &why));
+                let fault = first_fault(&found.report);
+                same = if same.0 == fault { (fault, same.1 + 1) } else { (fault, 1) };
                 if best.as_ref().is_none_or(|(least, _)| faults < *least) {
                     best = Some((faults, found));
+                }
+                let at_fault = broken > 0 && !unfit && !pinned && same.1 >= SAME_FAULTS;
+                if at_fault && best.as_ref().is_some_and(|(least, _)| least.broken > 0) {
+                    break;
                 }
             }
             Err(error) if is_of_plan(&error, pinned) => {
@@ -322,7 +372,7 @@ fn attempts(
                     Error::Mismatch { stage, message } => Error::Infeasible { stage, message },
                     other => other,
                 });
-                if best.is_none() && attempt + 1 >= MOST_IN_VAIN && !is_last() {
+                if best.is_none() && attempt + 1 >= MOST_IN_VAIN && !is_last {
                     break;
                 }
             }
@@ -458,7 +508,7 @@ fn with_area(graph: &SceneGraph, plan: &Floorplan) -> SceneGraph {
 }
 
 /// Puts a world together of a plan and its furniture, and judges it by the rules and by the brief that it answers to; the
-/// scenario goes on under the plan's seed.
+/// scenario goes on under the plan's seed, with what is locked in one that is `kept`.
 ///
 /// # Errors
 /// As [`scenario::generate`].
@@ -469,9 +519,10 @@ pub fn finish(
     domain: &Domain,
     retrieved: &Retrieval,
     brief: Option<Brief>,
+    kept: Option<&Scenario>,
 ) -> Result<(World, Report), Error> {
     let reseeded = SceneGraph { seed: plan.seed, ..graph.clone() };
-    let wishes = scenario::Wishes { brief: brief.as_ref(), ..Default::default() };
+    let wishes = scenario::Wishes { brief: brief.as_ref(), kept, ..Default::default() };
     let scenario = scenario::generate_as(&reseeded, &plan, &placements, domain, &wishes)?;
     let mut world = World { brief, ..world::assemble(name, graph, plan, placements, scenario) };
     let report = world::check(&world, domain, retrieved);
@@ -483,6 +534,12 @@ fn begin(stage: Stage, attempt: u32, observe: &mut dyn FnMut(Event<'_>), cancell
     Stop::from(cancelled).check()?;
     observe(Event::Started(stage, attempt));
     Ok(())
+}
+
+/// Returns the first broken rule and what breaks it.
+fn first_fault(report: &Report) -> Option<(String, String)> {
+    let first = report.rules.iter().flat_map(|r| &r.violations).find(|v| !v.given)?;
+    Some((first.code.clone(), first.subject.clone()))
 }
 
 /// Returns what breaks the first broken rule, in words, and how many there are.

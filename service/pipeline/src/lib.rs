@@ -12,6 +12,7 @@ mod fit;
 pub mod generate;
 mod give_way;
 mod grow;
+mod mend;
 pub mod variations;
 mod ways_out;
 

@@ -1,9 +1,11 @@
 //! What a room should hold: its type's furnishing lines and the wishes of the scene graph, in the order of placing.
 
+use std::collections::BTreeSet;
+
 use d3dgen_model::domain::{Arrangement, Domain, Furnishing, Goods, Mount, ObjectType, RoomType, Shape};
 use d3dgen_model::occupancy::ROBOT_HEIGHT_M;
 use d3dgen_model::offer;
-use d3dgen_model::offer::{asked_objects, docks_held, has_docks, other_bed, widest_circle_m};
+use d3dgen_model::offer::{asked_objects, dock_rank, docks_held, has_docks, other_bed, widest_circle_m};
 use d3dgen_model::robot_kind::cleans;
 use d3dgen_model::scene_graph::{GraphRoom, SceneGraph};
 
@@ -145,8 +147,8 @@ pub(crate) struct Household<'a> {
     circle_m: f64,
     /// True when one of them cleans: the docks of rooms for soiled things are theirs.
     cleans: bool,
-    /// True where one robot lives in a room that is there for its dock: no other has one.
-    one_berth: bool,
+    /// Rooms that are there for something else, and have the dock of a robot: as many as there are robots without one.
+    berths: BTreeSet<&'a str>,
     /// Most people that the graph has in one room to sleep in, or that live there.
     sharing: u32,
 }
@@ -173,7 +175,7 @@ impl<'a> Household<'a> {
             in_each: robots.div_ceil(homes.max(1) as u32),
             circle_m: widest_circle_m(&graph.robots),
             cleans: graph.robots.iter().any(|r| cleans(&r.kind)),
-            one_berth: robots == 1 && homes > 0,
+            berths: if homes > 0 { BTreeSet::new() } else { berths(domain, graph, robots) },
             sharing: held
                 .filter(|(kind, _)| sleeps(kind))
                 .map(|h| h.1)
@@ -201,13 +203,33 @@ impl<'a> Household<'a> {
     /// Returns true for a line that the building asks for, in a room for so many people.
     fn wants(&self, kind: &RoomType, line: &Furnishing, people: Option<u32>) -> bool {
         let dock = || self.domain.is_dock(&line.item);
-        // docks stand where there are robots, or in rooms that are there for them;
+        // docks stand where there are robots, or in rooms that are there for them
         // few lines ask who sleeps there, and to know takes time
         let robots = if kind.goods == Goods::Soiled { self.cleans } else { self.has_robots };
-        (line.required || robots && !self.one_berth || !dock())
+        (line.required || robots || !dock())
             && line.is_for(self.room_types.iter().copied(), self.accessible)
             && (line.sleepers == 0 || people.unwrap_or(0) >= line.sleepers || self.sleepers() >= line.sleepers)
     }
+}
+
+/// Returns the rooms in which robots live that no room is there for: those that somebody asked a dock for, then those that suit one
+/// best, one robot in each.
+fn berths<'a>(domain: &Domain, graph: &'a SceneGraph, robots: u32) -> BTreeSet<&'a str> {
+    let Some(robot) = graph.robots.first() else { return BTreeSet::new() };
+    let asked = |room: &GraphRoom| room.wished_assets.iter().any(|id| domain.is_dock(id));
+    let rank = |room: &GraphRoom| {
+        let kind = domain.room_type_or_generic(&room.room_type);
+        let holds = kind.furnishing.iter().any(|f| !f.required && domain.is_dock(&f.item));
+        let kept_out = graph.keeps_robots_out(&room.id);
+        holds.then(|| (!asked(room), kept_out, dock_rank(kind, robot).unwrap_or(u8::MAX)))
+    };
+    let mut rooms: Vec<_> = graph.rooms.iter().filter_map(|r| Some((rank(r)?, r.id.as_str()))).collect();
+    rooms.sort_by_key(|r| r.0);
+    let wished = graph.rooms.iter().filter(|r| asked(r)).count();
+    let listed = rooms.iter().filter(|r| !r.0.0).count();
+    // those wished for where no line speaks of them come by themselves
+    let left = (robots as usize).saturating_sub(wished - listed);
+    rooms.into_iter().take(left.max(listed)).map(|r| r.1).collect()
 }
 
 /// Returns the tasks of a room, most constrained first.
@@ -275,6 +297,10 @@ impl<'a> Order<'a, '_> {
         // what is asked for by name comes whoever lives there
         let called = || self.domain.anchor(&f.item).is_some_and(|a| self.is_named(a));
         let given_up = self.bed.is_some_and(|b| b.instead_of.contains(&f.item));
+        let berth = || self.graph.is_some_and(|g| self.household.berths.contains(g.id.as_str()));
+        if !f.required && self.domain.is_dock(&f.item) && !berth() {
+            return false;
+        }
         (self.household.wants(self.kind, f, guests) || f.sleepers > 0 && called()) && !given_up
     }
 

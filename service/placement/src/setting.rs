@@ -151,8 +151,7 @@ fn workroom_area(plan: &Floorplan, domain: &Domain, limits: &Limits) -> Option<f
 /// Returns the width that ways through circulation keep, m.
 fn way_width(graph: &SceneGraph, domain: &Domain, limits: &Limits) -> f64 {
     let robot_m = graph.robots.iter().map(|r| r.planned_radius_m()).fold(LEAST_RADIUS_M, f64::max);
-    let asked_m = limits.corridor_width.as_ref().map_or(0.0, |l| l.value).max(domain.circulation.width_m);
-    asked_m.max(2.0 * robot_m).max(limits.two_way_m(graph))
+    limits.corridor_m(&domain.circulation).max(2.0 * robot_m).max(limits.two_way_m(graph))
 }
 
 /// Notes which doors lead to rooms with steam.

@@ -5,7 +5,7 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_plugins::Registry;
 
 use super::built::planned::Planned;
-use super::built::{edges, locks, program, ring, rooms, toilets, workers};
+use super::built::{edges, hosts, locks, program, ring, rooms, toilets, workers};
 use super::levels::deal;
 use super::machines::{charging, robot_rules, robots};
 use super::people::homes;
@@ -33,7 +33,8 @@ pub(crate) fn settle<'a>(
     }
     // what is added moves others to other storeys
     for _ in 0..ROUNDS {
-        if !toilets::complete(reading, planned, &draft) {
+        let shared = hosts::share_bath_of_storey(reading, planned, &draft);
+        if !toilets::complete(reading, planned, &draft) && !shared {
             break;
         }
         draft = assemble(request, reading.clone(), planned);

@@ -50,7 +50,7 @@ fn question(desk: &Desk<'_, '_>, graph: &SceneGraph) -> Question {
     let domain = desk.plugin.domain();
     let retrieved = retrieve(graph, desk.plugin);
     let (constraints, constraint_ids) = prompts().floorplan.constraints(&retrieved);
-    let corridor = retrieved.limits.corridor_width.as_ref().map_or(0.0, |l| l.value).max(domain.circulation.width_m);
+    let corridor = retrieved.limits.corridor_m(&domain.circulation);
     let mut rooms = String::new();
     for room in &graph.rooms {
         let kind = domain.room_type_or_generic(&room.room_type);

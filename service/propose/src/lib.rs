@@ -167,8 +167,15 @@ impl Desk<'_, '_> {
         placements: Placements,
     ) -> Result<Generated, Error> {
         let domain = self.plugin.domain();
-        let (world, report) =
-            finish(&self.name, graph.clone(), (plan, placements), domain, retrieved, self.settings.brief.clone())?;
+        let (world, report) = finish(
+            &self.name,
+            graph.clone(),
+            (plan, placements),
+            domain,
+            retrieved,
+            self.settings.brief.clone(),
+            None,
+        )?;
         Ok(Generated { world, report, attempts: 1 })
     }
 }

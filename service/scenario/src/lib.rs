@@ -6,6 +6,7 @@
 mod conditions;
 mod floor;
 mod jobs;
+mod kept;
 mod lattice;
 mod people;
 mod points;
@@ -37,6 +38,8 @@ pub struct Wishes<'w> {
     pub hour: Option<&'w str>,
     /// What was asked for: robots' tasks, the hour.
     pub brief: Option<&'w Brief>,
+    /// Scenario whose locked robots and people go on doing what they do there.
+    pub kept: Option<&'w Scenario>,
 }
 
 /// Fills a furnished building with regions, points, robots and people of a usual hour.
@@ -81,6 +84,19 @@ pub fn generate_as(
     scenario.name = wishes.name.to_owned();
     scenario.hour = Some(hour.id.clone());
     jobs::add(&mut scenario, &building, wishes.brief);
+    if let Some(kept) = wishes.kept {
+        let graphs: Vec<&SceneGraph> = match seen.as_slice() {
+            [] => vec![graph],
+            seen => seen.iter().map(|(_, world)| &world.scene_graph).collect(),
+        };
+        let storeys: Vec<kept::Storey> = parts
+            .iter()
+            .zip(graphs)
+            .map(|(&(level, plan, placements), graph)| kept::Storey { level, graph, plan, placements })
+            .collect();
+        kept::keep(&mut scenario, kept, &storeys, domain);
+        people::keep_steps(&mut scenario, kept, &building);
+    }
     conditions::add(&mut scenario, plan, domain);
     Ok(scenario)
 }

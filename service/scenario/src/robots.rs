@@ -46,6 +46,7 @@ pub(crate) fn all(
                 ways: Vec::new(),
                 jobs: Vec::new(),
                 routes: Vec::new(),
+                locked: false,
             };
             if robot.misfit && !keep_where_it_fits(floor, &mut task, pois) {
                 continue;
@@ -147,7 +148,7 @@ pub(crate) fn add_routes(floor: &Floor, scenario: &mut Scenario) {
 }
 
 /// Returns the widest ways to a robot's goals and dock.
-fn ways(task: &RobotTask, (plan, placements): (&Floorplan, &Placements), pois: &[Poi]) -> Vec<RobotWay> {
+pub(crate) fn ways(task: &RobotTask, (plan, placements): (&Floorplan, &Placements), pois: &[Poi]) -> Vec<RobotWay> {
     let robot = &task.robot;
     let start = Point::new(task.start.x, task.start.y);
     let passages = Passages::new(plan, placements, robot, start);

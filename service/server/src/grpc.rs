@@ -4,7 +4,7 @@
 //! request is said with its field ([`crate::status`]).
 
 mod admin;
-mod asset;
+pub(crate) mod asset;
 pub(crate) mod domain;
 mod job;
 mod knowledge;
@@ -13,7 +13,7 @@ mod once;
 mod outbox;
 mod page;
 mod server;
-mod world;
+pub(crate) mod world;
 mod zip;
 
 use std::sync::Arc;

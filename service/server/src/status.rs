@@ -49,12 +49,26 @@ pub fn http(code: Code) -> StatusCode {
 const DOMAIN: &str = "d3dgen";
 /// Reasons that say more than the code does; docs/api.md lists them, and they stay.
 pub mod reason {
+    /// A change would leave a hard rule broken: `rule` and `subject` say which.
+    pub const BREAKS: &str = "BREAKS_RULE";
+    /// The prompt contradicts itself; `allow_conflicts` has it built all the same.
+    pub const CONTRADICTS: &str = "CONTRADICTS_ITSELF";
     /// What is to be changed is no more as the client saw it last.
     pub const CHANGED: &str = "CHANGED_SINCE";
     /// A field of the request cannot be used.
     pub const FIELD: &str = "INVALID_FIELD";
     /// Too much at once; the answer says when to come again.
     pub const BUSY: &str = "TOO_MUCH_AT_ONCE";
+    /// What was handed in does not fit the rest: `stage` says where that was found.
+    pub const MISFIT: &str = "PARTS_DO_NOT_FIT";
+    /// No result keeps all hard rules: `stage` says where it was looked for.
+    pub const NO_SOLUTION: &str = "NO_SOLUTION";
+    /// What is asked for cannot be made in any form: `stage` says who refuses.
+    pub const REFUSED: &str = "REQUEST_REFUSED";
+    /// No domain knows such a kind of building: `name`, and the `nearest` ones.
+    pub const UNKNOWN_BUILDING: &str = "UNKNOWN_BUILDING";
+    /// A world that breaks a hard rule goes into no file: `rule` says which.
+    pub const UNSOUND: &str = "NOT_SOUND";
     /// The server has no room to keep anything.
     pub const FULL: &str = "DISK_FULL";
     /// The server was asked by a name that is not its own.
@@ -69,8 +83,17 @@ pub mod reason {
 
 /// Returns an answer with a stable reason for programs, in place of one it may have.
 pub fn because(reason: &str, status: &Status) -> Status {
+    because_of(reason, &[], status)
+}
+
+/// Returns an answer with a stable reason and what is to be known of it, by names that stay too.
+pub fn because_of(reason: &str, facts: &[(&str, &str)], status: &Status) -> Status {
     let mut details = status.get_error_details();
-    details.set_error_info(reason, DOMAIN, std::collections::HashMap::new());
+    details.set_error_info(
+        reason,
+        DOMAIN,
+        facts.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect::<std::collections::HashMap<_, _>>(),
+    );
     let mut with = Status::with_error_details(status.code(), status.message(), details);
     for pair in status.metadata().iter() {
         if let tonic::metadata::KeyAndValueRef::Ascii(key, value) = pair {
@@ -141,9 +164,21 @@ pub fn document(field: &str, error: d3dgen_model::Error) -> Status {
 /// Returns the answer to what a stage refuses; `field` is what it was asked with.
 pub fn stage(field: &str, error: d3dgen_pipeline::Error) -> Status {
     use d3dgen_pipeline::Error;
+    let said = error.to_string();
     match error {
-        Error::Refused { .. } | Error::Mismatch { .. } => invalid(field, error.to_string()),
-        Error::Infeasible { .. } => Status::failed_precondition(error.to_string()),
+        Error::Refused { stage, .. } => because_of(reason::REFUSED, &[("stage", stage)], &invalid(field, said)),
+        Error::Mismatch { stage, .. } => because_of(reason::MISFIT, &[("stage", stage)], &invalid(field, said)),
+        Error::UnknownBuilding { name, nearest, .. } => {
+            let facts = [("name", name.as_str()), ("nearest", &nearest.join(", "))];
+            because_of(reason::UNKNOWN_BUILDING, &facts, &invalid(field, said))
+        }
+        Error::Infeasible { stage, .. } => {
+            because_of(reason::NO_SOLUTION, &[("stage", stage)], &Status::failed_precondition(said))
+        }
+        Error::Breaks { stage, rule, subject, .. } => {
+            let facts = [("stage", stage), ("rule", rule.as_str()), ("subject", subject.as_str())];
+            because_of(reason::BREAKS, &facts, &Status::failed_precondition(said))
+        }
         Error::Cancelled => Status::cancelled("the call was given up"),
     }
 }
@@ -275,6 +310,31 @@ mod tests {
         assert_eq!((full.code(), reason_of(&full).as_deref()), (Code::ResourceExhausted, Some("DISK_FULL")));
         assert!(full.metadata().contains_key("retry-after") && full.get_details_retry_info().is_some());
         assert_eq!(reason_of(&explained(Status::new(Code::Ok, ""))), None);
+    }
+
+    #[test]
+    fn what_a_stage_refuses_is_told_in_words_that_stay() {
+        use d3dgen_pipeline::Error;
+        let told = |error: Error| {
+            let status = explained(stage("edits[0]", error));
+            let info = status.get_error_details().error_info().cloned().expect("a reason");
+            (status.code(), info.reason, std::collections::BTreeMap::from_iter(info.metadata))
+        };
+        let (rule, subject, message) = ("door_narrow".to_owned(), "door_3".to_owned(), "edit 1: it would".to_owned());
+        let (code, reason, facts) = told(Error::Breaks { stage: "edit", rule, subject, message });
+        assert_eq!((code, reason.as_str()), (Code::FailedPrecondition, "BREAKS_RULE"));
+        assert_eq!((facts["rule"].as_str(), facts["subject"].as_str()), ("door_narrow", "door_3"));
+        let unknown = Error::UnknownBuilding {
+            name: "zorblatt".into(),
+            nearest: vec!["boathouse".into(), "sports hall".into()],
+            domains: vec!["general".into()],
+            fallback: "general".into(),
+        };
+        let (code, reason, facts) = told(unknown);
+        assert_eq!((code, reason.as_str()), (Code::InvalidArgument, "UNKNOWN_BUILDING"));
+        assert_eq!((facts["name"].as_str(), facts["nearest"].as_str()), ("zorblatt", "boathouse, sports hall"));
+        let (_, reason, facts) = told(Error::Infeasible { stage: "floorplan", message: "it is too dense".into() });
+        assert_eq!((reason.as_str(), facts["stage"].as_str()), ("NO_SOLUTION", "floorplan"));
     }
 
     const RETRY: Duration = Duration::from_secs(1);

@@ -1,4 +1,4 @@
-/** Calls of the server: clients of the contract, the token, and errors in words. */
+/** Calls of the server: clients of the contract, and the token. */
 import { Code, ConnectError, createClient, type Interceptor } from "@connectrpc/connect";
 import { createGrpcWebTransport } from "@connectrpc/connect-web";
 
@@ -10,7 +10,6 @@ import { LibraryService } from "../gen/d3dgen/v1/library_service_pb";
 import { ServerService } from "../gen/d3dgen/v1/server_service_pb";
 import { WorldService } from "../gen/d3dgen/v1/world_service_pb";
 import { access } from "./access.svelte";
-import { placesOf } from "./problems";
 
 /** Sends the token, and asks the person for one when the server wants another. */
 const withToken: Interceptor = (next) => async (request) => {
@@ -20,7 +19,7 @@ const withToken: Interceptor = (next) => async (request) => {
     try {
       return await next(request);
     } catch (error) {
-      if (codeOf(error) !== Code.Unauthenticated || request.stream) throw error;
+      if (ConnectError.from(error).code !== Code.Unauthenticated || request.stream) throw error;
       await access.ask(used);
     }
   }
@@ -45,24 +44,4 @@ export async function gathered(pieces: AsyncIterable<{ chunk: Uint8Array }>, tol
     told((size += chunk.length));
   }
   return new Blob(all, { type: "application/zip" });
-}
-
-export function codeOf(error: unknown): Code {
-  return ConnectError.from(error).code;
-}
-
-/** Returns true for what a person can do something about: no edit keeps the rules, a wish that contradicts itself. */
-export function isRefusal(error: unknown): boolean {
-  return [Code.FailedPrecondition, Code.InvalidArgument].includes(codeOf(error));
-}
-
-/** What the server says to programs and to those who type commands; here the page offers it. */
-const ASIDES = [/^(scene_graph|floorplan|placement|scenario|world): /, /; or set allow_conflicts$/, /, or plan them with `--domain \w+`$/];
-
-/** Returns what went wrong in the server's own words, without the places of the request. */
-export function reasonOf(error: unknown): string {
-  const known = ConnectError.from(error);
-  const places = placesOf(error).map((place) => place.message);
-  const said = places.length > 0 ? places : [known.rawMessage || Code[known.code]];
-  return said.map((text) => ASIDES.reduce((left, aside) => left.replace(aside, ""), text)).join("\n");
 }

@@ -1,6 +1,7 @@
 /** Rooms as circles of their area, near where they lie on the plan and clear of each other. */
 import type { World } from "../gen/d3dgen/v1/world_pb";
 import { corners, labelPoint } from "./geometry";
+import { names } from "./names.svelte";
 import { roomOf } from "./world";
 
 export interface Bubble {
@@ -24,7 +25,7 @@ export function bubblesOf(world: World, level: number): Bubble[] {
     const turn = (i / rooms.length) * 2 * Math.PI;
     const at = planned ? labelPoint(corners(planned.polygon)) : { x: 6 * Math.cos(turn), y: 6 * Math.sin(turn) };
     const area = planned?.netAreaM2 ?? room.targetAreaM2;
-    return { id: room.roomId, name: room.name, area, circulation: room.circulation, ...at, r: Math.sqrt(area / Math.PI) };
+    return { id: room.roomId, name: names.room(room), area, circulation: room.circulation, ...at, r: Math.sqrt(area / Math.PI) };
   });
   for (let round = 0; round < ROUNDS && push(bubbles); round++);
   return bubbles;

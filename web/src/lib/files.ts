@@ -1,5 +1,6 @@
 /** Files that come from the person's disk and go to it. */
-import { library, reasonOf } from "./api";
+import { library } from "./api";
+import { reasonOf } from "./refusals";
 import { session } from "./session.svelte";
 import { t } from "./texts.svelte";
 import { unzipped } from "./zip";

@@ -1,10 +1,13 @@
 /** The kinds of room and of thing that a domain knows, by their names in the reader's language; asked for once each. */
 import { domains } from "./api";
 import { texts } from "./texts.svelte";
+import { wordingOf } from "./wording";
 
 export interface Kind {
   id: string;
   name: string;
+  /** Its English name, which rooms are called by. */
+  label: string;
 }
 
 export interface Kinds {
@@ -28,12 +31,13 @@ export function kindsOf(domainId: string): Promise<Kinds> {
 }
 
 async function load(domainId: string, language: string): Promise<Kinds> {
-  const { manifest } = await domains.getDomain({ domainId, includeManifest: true });
-  const named = (one: Named) => (language === "en" ? one.label : capital(one.keywords[language]?.items[0] ?? one.label, language));
+  const [{ manifest }, wording] = await Promise.all([domains.getDomain({ domainId, includeManifest: true }), wordingOf(language)]);
+  const named = (one: Named, own: string | undefined) =>
+    language === "en" ? one.label : (own ?? capital(one.keywords[language]?.items[0] ?? one.label, language));
   const sorted = (all: Kind[]) => all.sort((a, b) => a.name.localeCompare(b.name, language));
   return {
-    room: sorted((manifest?.roomTypes ?? []).map((r) => ({ id: r.roomTypeId, name: named(r) }))),
-    object: sorted((manifest?.objects ?? []).map((o) => ({ id: o.objectId, name: named(o) }))),
+    room: sorted((manifest?.roomTypes ?? []).map((r) => ({ id: r.roomTypeId, label: r.label, name: named(r, wording.rooms[r.roomTypeId]) }))),
+    object: sorted((manifest?.objects ?? []).map((o) => ({ id: o.objectId, label: o.label, name: named(o, wording.objects[o.objectId]) }))),
   };
 }
 

@@ -1,6 +1,7 @@
 /** The verdict as rows: one for each hard rule and each constraint of the knowledge base. */
 import { type ConstraintResult, ConstraintStatus, type Report } from "../gen/d3dgen/v1/report_pb";
-import { figure, t, unitSaid, words } from "./texts.svelte";
+import { names } from "./names.svelte";
+import { figure, t, unitSaid } from "./texts.svelte";
 import { type Broken, ofViolation } from "./world";
 
 export type Standing = "broken" | "advice" | "held" | "undecided" | "elsewhere";
@@ -19,23 +20,34 @@ export interface RuleRow {
 
 const RANK: Record<Standing, number> = { broken: 0, advice: 1, held: 2, undecided: 3, elsewhere: 4 };
 
-/** Returns what a constraint requires, in words: `at least 1.2 m`. */
+/** Unit of what is so or is not. */
+const TRUTH = "boolean";
+
+/** Returns what was measured, in words: `1.5 m`; nothing where nothing was. */
+export function measuredIn(result: ConstraintResult): string {
+  if (result.measured === undefined) return "";
+  return result.unit === TRUTH ? t(result.measured ? "yes" : "no") : `${figure(result.measured)} ${unitSaid(result.unit)}`.trim();
+}
+
+/** Returns what a constraint requires, in words: `at least 1.2 m`; nothing of what is so or is not. */
 export function required(result: ConstraintResult): string {
-  const unit = unitSaid(result.unit);
-  const { requiredMin: min, requiredMax: max } = result;
+  return result.unit === TRUTH ? "" : wanted(result).trim();
+}
+
+function wanted({ unit: of, requiredMin: min, requiredMax: max }: ConstraintResult): string {
+  const unit = unitSaid(of);
   if (min !== undefined && max !== undefined && min !== max) return `${figure(min)} – ${figure(max)} ${unit}`;
   if (min !== undefined && max === min) return `${figure(min)} ${unit}`;
   if (min !== undefined) return t("atLeast", { value: figure(min), unit });
-  if (max !== undefined) return t("atMost", { value: figure(max), unit });
-  return "";
+  return max === undefined ? "" : t("atMost", { value: figure(max), unit });
 }
 
 export function ofConstraint(result: ConstraintResult): Broken {
-  const measured = result.measured === undefined ? "" : `${figure(result.measured)} ${unitSaid(result.unit)}`;
+  const measured = measuredIn(result);
   return {
     id: result.constraintId,
     subject: result.subject,
-    message: t("measuredBut", { name: words(result.name), measured, required: required(result) }),
+    message: t("measuredBut", { name: names.measure(result.name), measured, required: required(result) || t("yes") }),
     hard: result.mandatory,
     measured: result.measured,
     required: result.requiredMin ?? result.requiredMax,
@@ -69,7 +81,7 @@ function standing(results: ConstraintResult[]): Standing {
   return has(ConstraintStatus.NOT_DECIDABLE) ? "undecided" : "elsewhere";
 }
 
-/** Returns all rules as rows, what is broken first. */
+/** Returns all rules as rows, what is broken first; what only simulators depend on comes last where it is kept. */
 export function rowsOf(report: Report | undefined): RuleRow[] {
   if (!report) return [];
   const byId = new Map<string, ConstraintResult[]>();
@@ -78,7 +90,7 @@ export function rowsOf(report: Report | undefined): RuleRow[] {
   }
   const constraints = [...byId].map(([id, results]): RuleRow => ({
     id,
-    title: words(results[0].name),
+    title: names.measure(results[0].name),
     standing: standing(results),
     hard: false,
     mandatory: results.some((r) => r.mandatory),
@@ -88,7 +100,7 @@ export function rowsOf(report: Report | undefined): RuleRow[] {
   }));
   const hard = report.rules.map((rule): RuleRow => ({
     id: rule.rule,
-    title: rule.title,
+    title: names.rule(rule.rule, rule.title),
     standing: rule.violations.length > 0 ? "broken" : rule.checked > 0 ? "held" : "elsewhere",
     hard: true,
     mandatory: true,
@@ -96,6 +108,7 @@ export function rowsOf(report: Report | undefined): RuleRow[] {
     broken: rule.violations.map((v) => ofViolation(v)),
     results: [],
   }));
-  const weight = (row: RuleRow) => RANK[row.standing] * 4 + (row.hard ? 0 : row.mandatory ? 1 : 2);
+  const kind = (row: RuleRow) => (row.hard ? (row.standing === "broken" ? 0 : 3) : row.mandatory ? 1 : 2);
+  const weight = (row: RuleRow) => RANK[row.standing] * 4 + kind(row);
   return [...hard, ...constraints].sort((a, b) => weight(a) - weight(b));
 }

@@ -7,13 +7,14 @@ import { type KeptWorld, KeptWorldSchema } from "../gen/d3dgen/v1/library_servic
 import type { Placements } from "../gen/d3dgen/v1/placements_pb";
 import { type Report, ReportSchema } from "../gen/d3dgen/v1/report_pb";
 import type { Scenario } from "../gen/d3dgen/v1/scenario_pb";
-import { type SceneGraph, SceneGraphSchema } from "../gen/d3dgen/v1/scene_graph_pb";
+import { type Clutter, type SceneGraph, SceneGraphSchema, StyleSchema } from "../gen/d3dgen/v1/scene_graph_pb";
 import type { Brief } from "../gen/d3dgen/v1/brief_pb";
 import { type World, WorldSchema } from "../gen/d3dgen/v1/world_pb";
 import { type BuildingRequest, BuildingRequestSchema, type GenerateWorldRequest, type WorldEdit } from "../gen/d3dgen/v1/world_service_pb";
-import { codeOf, isRefusal, library, reasonOf, worlds } from "./api";
+import { library, worlds } from "./api";
+import { codeOf, isRefusal, learnTitles, reasonOf } from "./refusals";
 import { keep, kept } from "./keep";
-import { placesOf } from "./problems";
+import { reasonIn } from "./problems";
 import { ofDragged } from "./rules";
 import { type TextKey, t } from "./texts.svelte";
 import { isAsRead, wishes } from "./wishes.svelte";
@@ -63,6 +64,8 @@ export type EditInit = { case: Exclude<WorldEdit["edit"]["case"], undefined>; va
 const KEPT = "session";
 /** Wait before a server that did not answer is asked again, ms. */
 const AGAIN = 1500;
+/** Letters of the title of a kept world at most. */
+const TITLE = 80;
 /** States that undo can go back to. */
 const STEPS = 100;
 
@@ -92,7 +95,7 @@ class Session {
   /** True when the server lets this person keep worlds. */
   canKeep = $state(false);
   notice = $state.raw<Notice | undefined>();
-  /** Part of the last request that was at fault: `building.prompt`. */
+  /** Reason of the last refusal: `UNKNOWN_BUILDING`. */
   refused = "";
   busy = $state(false);
   /** Ids of selected rooms, walls, doors and objects. */
@@ -145,6 +148,7 @@ class Session {
 
   /** Adds a state behind the present one; what was undone is gone. */
   push(made: Made, home: Home = this.step?.home ?? {}, revision = 0n) {
+    learnTitles(made.report.rules);
     this.steps = [...this.steps.slice(0, this.at + 1), { ...made, home, revision }].slice(-STEPS);
     this.at = this.steps.length - 1;
     this.endPreview();
@@ -248,7 +252,7 @@ class Session {
 
   /**
    * Makes a world of the prompt, one stage after the other; returns true when there is one. What contradicts itself is
-   * refused unless it is `allowed`; where it is the request that is at fault, `refused` says which part of it.
+   * refused unless it is `allowed`; `refused` says why there is none.
    */
   async generate(allowed = false): Promise<boolean> {
     return await this.#make(async () => ({ case: "building", value: await this.asked() }), t("made"), {}, undefined, allowed);
@@ -305,6 +309,21 @@ class Session {
   /** Plans rooms that the person put otherwise; what is locked stays. Returns true when there is a world. */
   async replan(graph: SceneGraph, label: string): Promise<boolean> {
     return await this.#make(async () => ({ case: "sceneGraph", value: graph }), label, this.step?.home, this.step?.world);
+  }
+
+  /** Furnishes all rooms anew with more or fewer everyday things; the plan stays, and so does what is locked. Returns true when there is a world. */
+  async clutter(amount: Clutter, label: string): Promise<boolean> {
+    const world = this.step?.world;
+    const plan = world?.floorplan;
+    if (!world?.sceneGraph || !plan) return false;
+    const graph = clone(SceneGraphSchema, world.sceneGraph);
+    graph.style = create(StyleSchema, { ...graph.style, clutter: amount });
+    const whole = { ...world, floorplan: { ...plan, rooms: plan.rooms.map((room) => ({ ...room, locked: true })) } };
+    const made = await this.#run(async () => ({ case: "sceneGraph", value: graph }), label, whole);
+    if (!made?.world.floorplan) return false;
+    // the plan was held for this one time
+    this.push({ ...made, world: { ...made.world, floorplan: freed(made.world.floorplan, plan) } });
+    return true;
   }
 
   /** Makes three worlds with seeds of their own to choose from. */
@@ -366,7 +385,7 @@ class Session {
       }
     } catch (error) {
       if (!stop.signal.aborted) {
-        this.refused = placesOf(error)[0]?.path ?? "";
+        this.refused = reasonIn(error).reason;
         this.say(reasonOf(error));
       }
     } finally {
@@ -443,7 +462,7 @@ class Session {
     } catch (error) {
       this.endPreview();
       const anyway = instead && { label: t("anyway"), act: () => void this.replace(instead, label) };
-      this.say(reasonOf(error), ...(anyway && isRefusal(error) ? [anyway] : []));
+      this.say(reasonOf(error, step.world), ...(anyway && isRefusal(error) ? [anyway] : []));
       return false;
     } finally {
       this.busy = false;
@@ -536,13 +555,22 @@ async function put(step: Step) {
 }
 
 function titleOf(world: World): string {
-  return Array.from(world.brief?.prompt || world.name).slice(0, 60).join("");
+  const said = Array.from(world.brief?.prompt || world.name);
+  if (said.length <= TITLE) return said.join("");
+  const cut = said.slice(0, TITLE).join("");
+  return `${cut.slice(0, cut.lastIndexOf(" ") > 0 ? cut.lastIndexOf(" ") : undefined)}…`;
 }
 
 function hasLocks(world: World): boolean {
   const plan = world.floorplan;
   const parts = [plan?.rooms, plan?.walls, plan?.doors, plan?.windows, world.placements?.placements];
   return parts.some((all) => all?.some((part) => part.locked));
+}
+
+/** Returns a plan in which only those rooms are locked that were so before. */
+function freed(plan: Floorplan, before: Floorplan): Floorplan {
+  const locked = new Set(before.rooms.filter((room) => room.locked).map((room) => room.roomId));
+  return { ...plan, rooms: plan.rooms.map((room) => ({ ...room, locked: locked.has(room.roomId) })) };
 }
 
 /** Returns a world with what a stage has made. */

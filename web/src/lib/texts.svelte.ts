@@ -34,6 +34,11 @@ export function t(key: TextKey, values: Record<string, string | number> = {}): s
   return text.replace(/\{(\w+)\}/g, (_, name: string) => String(values[name] ?? ""));
 }
 
+/** Returns the text of a key that is made of data, and `or` where there is none for it. */
+export function told(key: string, or: string, values: Record<string, string | number> = {}): string {
+  return key in en ? t(key as TextKey, values) : or;
+}
+
 /** Returns a figure as the reader's language writes it, with at most `digits` behind the point. */
 export function figure(value: number, digits = 2): string {
   return value.toLocaleString(texts.language, { maximumFractionDigits: digits });
@@ -44,9 +49,10 @@ export function words(id: string): string {
   return id.replaceAll("_", " ");
 }
 
-/** Returns a unit as people write it: `m^2` becomes `m²`. */
+/** Returns a unit as people write it: `m^2` becomes `m²`; nothing for plain numbers. */
 export function unitSaid(unit: string): string {
-  return unit.replace("^2", "²").replace("^3", "³");
+  if (unit === "count") return "";
+  return unit.replace("^2", "²").replace("^3", "³").replace(/^deg$/, "°");
 }
 
 /** Returns the name of a storey. */

@@ -1,5 +1,5 @@
 /** Work that a part of the page waits for: what goes wrong is said, and nothing else is begun meanwhile. */
-import { reasonOf } from "./api";
+import { reasonOf } from "./refusals";
 import { session } from "./session.svelte";
 
 export class Work {

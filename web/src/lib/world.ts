@@ -3,6 +3,8 @@ import type { Door, Floorplan, PlanRoom, Segment, Wall, Window } from "../gen/d3
 import type { Placement } from "../gen/d3dgen/v1/placements_pb";
 import type { Violation } from "../gen/d3dgen/v1/report_pb";
 import type { World } from "../gen/d3dgen/v1/world_pb";
+import { names } from "./names.svelte";
+import { figure, t, unitSaid } from "./texts.svelte";
 import { areaOf, corners, ends, footprint, inside, type P, point, tidy } from "./geometry";
 
 /** What lies on one storey. */
@@ -41,9 +43,12 @@ export function roomOf(world: World | undefined, id: string): PlanRoom | undefin
   return world?.floorplan?.rooms.find((r) => r.roomId === id);
 }
 
-/** Returns the name of a thing as people read it. */
+/** Returns the name of a thing as people read it: an object's with that of its room. */
 export function nameOf(world: World | undefined, id: string): string {
-  return roomOf(world, id)?.name ?? id.replaceAll("_", " ");
+  const room = roomOf(world, id);
+  if (room) return names.room(room);
+  const object = objectOf(world, id);
+  return object ? `${names.of(object.objectId)}, ${nameOf(world, object.roomId)}` : names.one(id);
 }
 
 /** Returns the room at a point of a storey. */
@@ -268,6 +273,14 @@ export function key(broken: { id: string; subject: string }): string {
   return `${broken.id} ${broken.subject}`;
 }
 
-export function ofViolation(v: Violation, hard = true): Broken {
-  return { id: v.code, subject: v.subject, message: v.message, hard, measured: v.measured, required: v.required, unit: v.unit };
+export function ofViolation(v: Violation): Broken {
+  return { id: v.code, subject: v.subject, message: said(v), hard: true, measured: v.measured, required: v.required, unit: v.unit };
+}
+
+/** Returns what is broken, in the server's words, or in the reader's language the rule with its figures. */
+function said({ code, message, measured, required, unit }: Violation): string {
+  if (!names.areTranslated) return message;
+  const shown = (value: number) => `${figure(value)} ${unitSaid(unit)}`.trim();
+  if (measured === undefined || required === undefined) return names.rule(code, message);
+  return t("violated", { rule: names.rule(code, message), measured: shown(measured), required: shown(required) });
 }

@@ -1,6 +1,7 @@
 /** The view in space: looks, walks, opens doors, tells what was pointed at. Drawn only when something changes. */
 import {
   AmbientLight,
+  Box3,
   BufferGeometry,
   Color,
   DirectionalLight,
@@ -34,6 +35,10 @@ const WALKER = { radius: 0.22, speed: 1.6, knees: 0.35 };
 const DOOR = { time: 0.5, near: 1.4 };
 /** From where a single thing is looked at: so far before its front, and so many of its own lengths more, so high above its middle, m. */
 const LOOK = { near: 0.5, lengths: 1.4, above: 0.7 };
+/** From which side a whole storey is looked at, and how much of the picture it fills at most. */
+const ABOVE = new Vector3(-0.2, -0.65, 1).normalize();
+const FILLED = 0.94;
+const FARTHEST = 450;
 const LIGHTS = 12;
 const SKY = { day: "#dfe9ee", night: "#10151c" };
 const WAYS: Record<string, [number, number]> = {
@@ -203,14 +208,25 @@ export class SpaceView {
   whole() {
     this.#walking = false;
     this.#controls.enabled = true;
-    const floors = this.#bodies?.floors ?? [];
-    const xs = floors.map((f) => f.at.x);
-    const ys = floors.map((f) => f.at.y);
-    const middle = new Vector3((Math.min(...xs) + Math.max(...xs)) / 2, (Math.min(...ys) + Math.max(...ys)) / 2, 0);
-    const far = Math.max(6, Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys)) * 1.25;
+    const box = this.#bodies ? new Box3().setFromObject(this.#bodies.root) : new Box3();
+    if (box.isEmpty()) return;
+    const middle = box.getCenter(new Vector3());
     this.#controls.target.copy(middle);
-    this.#camera.position.set(middle.x - far * 0.2, middle.y - far * 0.6, far * 1.05);
-    this.#controls.update();
+    // as near as has every corner of the building in the picture
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(
+      (i) => new Vector3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z),
+    );
+    const isWhole = (far: number) => {
+      this.#camera.position.copy(ABOVE).multiplyScalar(far).add(middle);
+      this.#controls.update();
+      this.#camera.updateMatrixWorld();
+      return corners.every((corner) => {
+        const { x, y } = corner.clone().project(this.#camera);
+        return Math.abs(x) < FILLED && Math.abs(y) < FILLED;
+      });
+    };
+    let far = box.getSize(new Vector3()).length() / 2;
+    while (!isWhole(far) && far < FARTHEST) far *= 1.04;
     this.#overhead(false);
     this.#ask();
   }

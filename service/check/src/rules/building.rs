@@ -111,11 +111,11 @@ fn may_pass(c: &Context, from: &Room, to: &Room) -> bool {
     let hosted = |inner: &Room, outer: &Room| {
         inner.kind.access == Access::Host && inner.kind.hosts.contains(&outer.plan.room_type)
     };
-    // a bathroom that the scene graph gives to one room is that room's en suite
+    // what the scene graph gives to one room is that room's own
     let belongs = |inner: &Room, outer: &Room| {
         let pair = [inner.plan.room_id.as_str(), outer.plan.room_id.as_str()];
         let mut edges = c.graph().edges.iter().filter(|e| e.required && e.reason == BY_HOST);
-        inner.kind.wet && edges.any(|e| pair == [e.a.as_str(), e.b.as_str()])
+        inner.kind.may_hang_on(outer.kind) && edges.any(|e| pair == [e.a.as_str(), e.b.as_str()])
     };
     // an anteroom hangs on its host and is the way into it
     let hangs = hosted(to, from) || hosted(from, to) || belongs(to, from);

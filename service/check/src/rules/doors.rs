@@ -132,10 +132,13 @@ fn needed_width(c: &Context, door: &Door) -> (f64, String) {
     let hub = |r: &Room| r.plan.circulation || c.domain.circulation.hub_room_types.contains(&r.plan.room_type);
     let hangs_on = |a: &Room, b: &Room| a.kind.hosts.contains(&b.plan.room_type);
     match ends[..] {
-        [_] if door.entrance => match &c.retrieval.limits.entrance_width {
-            Some(l) if l.value > c.domain.circulation.entrance_width_m => (l.value, l.constraint_id.clone()),
-            _ => (c.domain.circulation.entrance_width_m.min(door.line.length()), "the entrance".into()),
-        },
+        [_] if door.entrance => {
+            let usual = c.domain.circulation.entrance_width_m(!c.retrieval.limits.no_beds);
+            match &c.retrieval.limits.entrance_width {
+                Some(l) if l.value > usual => (l.value, l.constraint_id.clone()),
+                _ => (usual.min(door.line.length()), "the entrance".into()),
+            }
+        }
         [a, b] if hangs_on(a, b) => own(a),
         [a, b] if hangs_on(b, a) => own(b),
         [a, b] if hub(a) && !hub(b) => own(b),

@@ -119,7 +119,8 @@ pub const RULES: &[Rule] = &[
     whole("room_dimension", "rooms keep their least clear extent", rooms::dimension),
     rule("room_proportion", "rooms are at most 2.5 times as long as wide", rooms::proportion),
     whole("room_height", "rooms keep their least clear height", rooms::height),
-    furnishing("object_missing", "every room has what makes it that room", furniture::required),
+    // what a room needs follows from the rooms of the whole building: a studio has no kitchen of its own where there is one upstairs
+    Rule { whole: true, ..furnishing("object_missing", "every room has what makes it that room", furniture::required) },
     furnishing("object_facing", "members of a group face as their use needs", furniture::facing),
     furnishing("object_back", "what belongs against a wall has its back to one", furniture::back),
     furnishing("object_clearance", "objects keep the free floor in front that their use needs", furniture::clearance),

@@ -41,7 +41,7 @@ pub fn split(c: &Context, out: &mut Findings) {
 /// Bare corridors keep what the domain and the building rules ask for; furnished ones what the domain asks for, and the
 /// width that the robots need to pass. What hangs flat on a wall narrows nothing.
 pub fn corridors(c: &Context, out: &mut Findings) {
-    let domain = c.domain.circulation.width_m;
+    let domain = c.domain.circulation.width_m(!c.retrieval.limits.no_beds);
     let limit = c.retrieval.limits.corridor_width.as_ref();
     let robots = 2.0 * c.radius.max(LEAST_RADIUS_M);
     // stairwells and shafts are as wide as what they hold

@@ -19,7 +19,8 @@ use crate::output::{Kept, Output};
 use crate::registry::{RegistryArgs, domain};
 use crate::summary;
 
-/// What can be written after --do: the operation, and its fields in their order; fields in brackets may be left out.
+/// What can be written after --do: the operation, and its fields in their order; fields in brackets may be left out,
+/// fields that end in dots take all that follows.
 const FORMS: &[(&str, &[&str])] = &[
     ("move_wall", &["wall_id", "by_m"]),
     ("move_opening", &["opening_id", "by_m"]),
@@ -30,9 +31,13 @@ const FORMS: &[(&str, &[&str])] = &[
     ("add_object", &["room_id", "object"]),
     ("remove_object", &["placement_id"]),
     ("refurnish", &["room_id"]),
+    ("change_job", &["robot_id", "job_id", "to..."]),
+    ("change_steps", &["agent_id", "steps..."]),
     ("lock", &["ids..."]),
     ("unlock", &["ids..."]),
 ];
+/// Ends a field that takes all words that follow.
+const MORE: &str = "...";
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -46,7 +51,9 @@ const FORMS: &[(&str, &[&str])] = &[
   add_object ROOM TYPE
   remove_object OBJECT_ID
   refurnish ROOM
-  lock ID... | unlock ID...               rooms, walls, doors, windows, objects
+  change_job ROBOT JOB POINT...           the points it goes to, in turn
+  change_steps PERSON NUMBER...           the steps that stay, in their new turn
+  lock ID... | unlock ID...               rooms, walls, doors, windows, objects; robots and people keep what they do
 
 Example:
   d3dgen edit flat --do 'move_wall wall_7 0.4' --do 'add_room storage 4' --out flat_2")]
@@ -131,28 +138,70 @@ fn change(words: &str) -> Result<Edit, String> {
     let given: Vec<&str> = given.collect();
     let known = || FORMS.iter().map(|f| f.0).collect::<Vec<_>>().join(", ");
     let (_, fields) = FORMS.iter().find(|f| f.0 == op).ok_or_else(|| format!("`{op}` is none of {}", known()))?;
-    if fields[0] == "ids..." {
-        if given.is_empty() {
-            return Err("names nothing".into());
-        }
-        let ids = given.into_iter().map(str::to_owned).collect();
-        return Ok(Edit::Lock { ids, locked: op == "lock", contents: false });
-    }
     let needed = fields.iter().filter(|f| !f.starts_with('[')).count();
-    if given.len() < needed || given.len() > fields.len() {
+    let takes_all = fields.last().is_some_and(|f| f.ends_with(MORE));
+    if given.len() < needed || (given.len() > fields.len() && !takes_all) {
         return Err(format!("needs {}", fields.join(" ").to_uppercase()));
     }
-    let mut object = Map::from_iter([("op".to_owned(), Value::from(op))]);
-    for (field, word) in fields.iter().zip(given) {
+    let mut object = Map::from_iter([("op".to_owned(), Value::from(op.trim_start_matches("un")))]);
+    if op.ends_with("lock") {
+        object.insert("locked".to_owned(), Value::from(op == "lock"));
+    }
+    for (i, (field, word)) in fields.iter().zip(&given).enumerate() {
+        if let Some(field) = field.strip_suffix(MORE) {
+            object.insert(field.to_owned(), list(field, &given[i..])?);
+            continue;
+        }
         let field = field.trim_matches(['[', ']']);
         let value = match field {
             "by_m" | "area_m2" | "x" | "y" | "yaw_rad" => {
                 let number: f64 = word.parse().map_err(|_| format!("`{word}` is no number"))?;
                 Value::from(number)
             }
-            _ => Value::from(word),
+            _ => Value::from(*word),
         };
         object.insert(field.to_owned(), value);
     }
     serde_json::from_value(Value::Object(object)).map_err(|e| e.to_string())
+}
+
+/// Returns the words at the end of a change as a list: ids, or numbers of steps.
+fn list(field: &str, words: &[&str]) -> Result<Value, String> {
+    if field != "steps" {
+        return Ok(Value::from(words.to_vec()));
+    }
+    let number = |word: &&str| word.parse::<u32>().map_err(|_| format!("`{word}` is no number of a step"));
+    let numbers: Vec<u32> = words.iter().map(number).collect::<Result<_, _>>()?;
+    Ok(numbers.into_iter().map(|number| serde_json::json!({ "number": number })).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use d3dgen_model::edits::StepKept;
+
+    use super::*;
+
+    #[test]
+    fn changes_in_words_name_as_much_as_they_like_at_the_end() {
+        let lock = |words: &str| match change(words).expect(words) {
+            Edit::Lock { ids, locked, .. } => (ids, locked),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(lock("lock a_1 b_2"), (vec!["a_1".to_owned(), "b_2".to_owned()], true));
+        assert_eq!(lock("unlock a_1"), (vec!["a_1".to_owned()], false));
+        let job = change("change_job delivery_robot_1 deliver_1 point_b point_a").expect("a job");
+        assert!(matches!(&job, Edit::ChangeJob { to, load_kg: None, .. } if to == &["point_b", "point_a"]), "{job:?}");
+        let turn = change("change_steps nurse_1 3 1").expect("a turn");
+        let numbers = |steps: &[StepKept]| steps.iter().map(|s| s.number).collect::<Vec<_>>();
+        assert!(matches!(&turn, Edit::ChangeSteps { steps, .. } if numbers(steps) == [3, 1]), "{turn:?}");
+        for (words, said) in [
+            ("lock", "needs IDS..."),
+            ("change_steps nurse_1", "needs AGENT_ID STEPS..."),
+            ("change_steps nurse_1 x", "`x` is no number of a step"),
+            ("refurnish a b", "needs ROOM_ID"),
+            ("blow_up a", "`blow_up` is none of"),
+        ] {
+            assert!(change(words).expect_err(words).contains(said), "{words}");
+        }
+    }
 }

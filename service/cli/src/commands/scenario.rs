@@ -86,7 +86,7 @@ impl Args {
 
 impl ScenarioArgs {
     fn wishes(&self) -> Wishes<'_> {
-        Wishes { name: self.name.as_deref().unwrap_or_default(), hour: self.time.as_deref(), brief: None }
+        Wishes { name: self.name.as_deref().unwrap_or_default(), hour: self.time.as_deref(), ..Wishes::default() }
     }
 }
 

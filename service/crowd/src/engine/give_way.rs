@@ -11,8 +11,6 @@ use crate::space::NOWHERE;
 
 /// Who walks within this of the direction of another one goes the same way (cosine).
 const SAME_WAY: f64 = 0.5;
-/// Share of its time that somebody stands aside on purpose.
-const MOST_PAUSED: f64 = 0.3;
 /// How far ahead somebody is in the way, m.
 const AHEAD_M: f64 = 1.3;
 /// How far others are looked at who may be asked aside, m; and how far somebody goes aside at most.
@@ -82,8 +80,10 @@ impl Engine<'_> {
             // those behind wait for the one in front, who sorts it out
             let t = self.t;
             let m = &mut self.movers[i];
-            if !m.is_paused() && m.paused_share(t) < MOST_PAUSED {
-                m.begin_pause(t, "queue");
+            match (m.is_paused(), m.may_stand(t, PATIENCE_S)) {
+                (false, true) => m.begin_pause(t, "queue"),
+                (true, false) => m.end_pause(t),
+                _ => {}
             }
             return;
         }
@@ -320,8 +320,7 @@ impl Engine<'_> {
                 m.legs = std::iter::once(first).chain(last).collect();
             }
         }
-        // who makes way most of its time is in a crowd, and does not stand on purpose
-        if m.paused_share(t) < MOST_PAUSED {
+        if m.may_stand(t, YIELD_S) {
             m.begin_pause(t, "yield");
         }
         m.state = State::Yielding { until: t + YIELD_S, to: takes, arrived: false };

@@ -45,13 +45,20 @@ fn walker(id: &str, from: Point, tasks: Vec<Task>) -> Mover {
     mover
 }
 
-/// Runs them and returns them, after nobody was in anybody or in a wall.
+/// Runs them and returns them; none of them called more than half of its time a pause.
 fn moved(space: Space, stations: Vec<(usize, usize, Station)>, movers: Vec<Mover>) -> Vec<Mover> {
     let spaces = [space];
     let mut engine = Engine::new(&spaces, &[], stations, SECONDS);
     engine.access = vec![vec![vec![true]]];
     engine.movers = movers;
     assert!(engine.run(&mut |_| true));
+    for m in &engine.movers {
+        // who never found the door free was not there
+        let Some(end) = m.samples().last().map(|s| s.t) else { continue };
+        let stood: f64 = m.pauses.iter().map(|p| p.to.min(end) - p.from).sum();
+        let there = end - m.samples()[0].t;
+        assert!(stood <= 0.5 * there, "{} calls {stood:.1} s of {there:.1} s a pause", m.id);
+    }
     engine.movers
 }
 
@@ -103,6 +110,18 @@ fn of_two_wide_ones_who_come_to_an_aisle_at_once_one_goes_first() {
             assert_eq!((m.done.len(), m.missed), (1, 0), "{} of those {apart_m} m apart gets there", m.id);
         }
     }
+}
+
+#[test]
+fn who_has_just_come_calls_no_long_standing_a_pause() {
+    let mut late = walker("late", Point::new(1.0, 1.0), Vec::new());
+    late.sample(100.0, &[0]);
+    assert!(!late.may_stand(102.0, YIELD_S), "10 of 12 s at the end");
+    assert!(late.may_stand(112.0, YIELD_S), "10 of 22 s");
+    late.begin_pause(112.0, "yield");
+    late.end_pause(122.0);
+    assert!(!late.may_stand(123.0, YIELD_S), "20 of 33 s");
+    assert!(late.may_stand(145.0, YIELD_S), "20 of 55 s");
 }
 
 #[test]

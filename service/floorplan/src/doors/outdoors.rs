@@ -1,5 +1,7 @@
 //! Doors to outdoors: the entrance, gates for vehicles, ways out at the ends of corridors and of full rooms.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use d3dgen_model::domain::{Daylight, Zone};
 use d3dgen_model::floorplan::{Door, DoorKind, Swing};
 use d3dgen_model::measures::JAMB_M;
@@ -49,6 +51,12 @@ const LESS_LIVED_IN: f64 = 0.8;
 /// Wall for windows that a square meter of floor needs, m: a seventh of it as glass 1.3 m high.
 const GLASS_M_PER_M2: f64 = 0.11;
 
+/// What it costs a gate to be at another side than those of its kind.
+const OFF_YARD: f64 = 100.0;
+
+/// A side of the building: whether its walls run north-south, and whether outdoors is at their lower end.
+type Side = (bool, bool);
+
 /// Returns true for two openings of one wall of which one begins before the other ends.
 fn meets(a: &Segment, b: &Segment) -> bool {
     let span = |from: f64, to: f64| [from.min(to), from.max(to)];
@@ -74,20 +82,45 @@ impl Site<'_> {
         }
     }
 
-    /// Places the gates through which vehicles come in, at the end of the room rather than along it.
+    /// Places the gates through which vehicles come in, at the end of the room rather than along it; those of one kind at one side
+    /// of the building, as far as its walls allow.
     pub(super) fn lay_gates(&self, laid: &mut Laid) {
-        for (room, spec) in self.brief.rooms.iter().enumerate() {
-            let Some(clear) = spec.gate else { continue };
-            let opening = Brief::opening(clear);
-            let walls = self.stretches.iter().filter(|s| s.leads_out_of() == Some(room) && !self.is_party(s));
+        let docks = self.brief.docks();
+        let yards: Vec<Option<Side>> = docks.iter().map(|rooms| self.yard(rooms)).collect();
+        for (room, spec) in self.brief.rooms.iter().enumerate().filter(|(_, spec)| spec.gate.is_some()) {
+            let yard = docks.iter().position(|rooms| rooms.contains(&room)).and_then(|at| yards[at]);
             let mut spots: Vec<Spot> = self.standing_spot(&[room], false).into_iter().collect();
             if spots.is_empty() {
-                spots.extend(walls.flat_map(|s| self.gate_spots(s, (room, spec), clear, opening)));
+                let off = |side: Side| if yard.is_none_or(|yard| yard == side) { 0.0 } else { OFF_YARD };
+                let all = self.gates_of(room).into_iter();
+                spots.extend(all.map(|(side, spot)| Spot { penalty: spot.penalty + off(side), ..spot }));
             }
             if !laid.take_best(spots) {
                 laid.missing.push(format!("outdoors to {}", spec.id));
             }
         }
+    }
+
+    /// Returns the side of the building at which most of these rooms may have their gates.
+    fn yard(&self, rooms: &[usize]) -> Option<Side> {
+        let mut held: BTreeMap<Side, usize> = BTreeMap::new();
+        for &room in rooms {
+            let sides: BTreeSet<Side> = self.gates_of(room).into_iter().map(|(side, _)| side).collect();
+            sides.into_iter().for_each(|side| *held.entry(side).or_default() += 1);
+        }
+        held.into_iter().max_by_key(|(_, rooms)| *rooms).map(|(side, _)| side)
+    }
+
+    /// Returns where a room may have its gate, and at which side of the building that is.
+    fn gates_of(&self, room: usize) -> Vec<(Side, Spot)> {
+        let spec = &self.brief.rooms[room];
+        let Some(clear) = spec.gate else { return Vec::new() };
+        let walls = self.stretches.iter().filter(|s| s.leads_out_of() == Some(room) && !self.is_party(s));
+        let of = |s: &Stretch| {
+            let side = (s.vertical, s.low.is_none());
+            self.gate_spots(s, (room, spec), clear, Brief::opening(clear)).into_iter().map(move |spot| (side, spot))
+        };
+        walls.flat_map(of).collect()
     }
 
     fn gate_spots(&self, s: &Stretch, (room, spec): (usize, &RoomSpec), clear: f64, opening: f64) -> Vec<Spot> {

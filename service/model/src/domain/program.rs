@@ -205,6 +205,9 @@ pub struct Circulation {
     pub entrance_room_types: Vec<String>,
     /// Clear width of the entrance door, m.
     pub entrance_width_m: f64,
+    /// The two widths of a building through which no bed rolls; those above where it is not said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub without_beds: Option<Ways>,
     /// True when a corridor needs a second way out at its far end.
     #[serde(default)]
     pub second_exit: bool,
@@ -230,6 +233,30 @@ pub struct Circulation {
     /// How buildings with several storeys are made; without it the domain has one storey only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub storeys: Option<Storeys>,
+}
+
+/// How wide the ways of a building are.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ways {
+    /// Clear width of circulation, m, before constraints raise it.
+    pub width_m: f64,
+    /// Clear width of the entrance door, m.
+    pub entrance_width_m: f64,
+    /// The rule and where it is from.
+    pub source: String,
+}
+
+impl Circulation {
+    /// Returns the clear width of circulation of a building with beds on wheels or without, m, before constraints raise it.
+    pub fn width_m(&self, beds: bool) -> f64 {
+        self.without_beds.as_ref().filter(|_| !beds).map_or(self.width_m, |w| w.width_m)
+    }
+
+    /// Returns the clear width of the entrance door of a building with beds on wheels or without, m, before constraints raise it.
+    pub fn entrance_width_m(&self, beds: bool) -> f64 {
+        self.without_beds.as_ref().filter(|_| !beds).map_or(self.entrance_width_m, |w| w.entrance_width_m)
+    }
 }
 
 /// A part of a building behind a lock, with a corridor of its own.

@@ -208,6 +208,15 @@ pub enum RobotUse {
 }
 
 impl RoomType {
+    /// Returns true where a room of this type may be entered through one of another type alone, because it is given to that one:
+    /// its en suite, its closet, its balcony. Others would go through a private room, and nobody through a bathroom, unless the type
+    /// itself names it as a host.
+    pub fn may_hang_on(&self, host: &Self) -> bool {
+        let by_type = self.access == Access::Host && self.hosts.contains(&host.id);
+        let own = (self.wet || self.privacy == Privacy::Private) && !host.wet;
+        by_type || host.privacy != Privacy::Private || own
+    }
+
     pub(super) fn check(&self, path: &str, domain: &Domain, problems: &mut Vec<Problem>) {
         let a = self.area_m2;
         if !(0.0 < a.min && a.min <= a.target && a.target <= a.max) {

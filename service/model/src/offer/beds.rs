@@ -1,9 +1,12 @@
 //! Beds of rooms that people stay in overnight.
 
 use super::asked_objects;
-use crate::domain::{Domain, Furnishing, RoomType, Shape, Zone};
+use crate::domain::{Domain, Furnishing, ObjectType, RoomType, Shape, Zone};
 use crate::measures::BED_FOR_TWO_M;
 use crate::scene_graph::GraphRoom;
+
+/// Tag of objects that are mounted where they stand.
+const FIXED: &str = "fixed";
 
 /// Returns how many people a room of a type has beds for, least and most; `None` where nobody stays overnight.
 pub fn sleeps(domain: &Domain, kind: &RoomType) -> Option<[u32; 2]> {
@@ -14,6 +17,13 @@ pub fn sleeps(domain: &Domain, kind: &RoomType) -> Option<[u32; 2]> {
         let each = sleepers_of(domain, &line.item);
         (each > 0).then(|| [line.min.max(1) * each, line.max.max(1) * each])
     })
+}
+
+/// Returns true for rooms that beds, stretchers or operating tables on wheels are brought to; what is `fixed` (a dentist's chair)
+/// stays where it is.
+pub fn rolls_beds(domain: &Domain, kind: &RoomType) -> bool {
+    let rolls = |o: &ObjectType| o.shape == Shape::HospitalBed && !o.tags.iter().any(|t| t == FIXED);
+    kind.furnishing.iter().any(|f| f.min > 0 && domain.anchor(&f.item).is_some_and(rolls))
 }
 
 /// Returns how many people sleep in the beds of an object or a group.

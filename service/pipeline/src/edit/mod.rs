@@ -7,6 +7,7 @@
 mod objects;
 mod openings;
 mod rooms;
+mod tasks;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,6 +16,7 @@ use d3dgen_model::edits::Edit;
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::placements::Placements;
 use d3dgen_model::report::Report;
+use d3dgen_model::scenario::Scenario;
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::stage::{Error, Stop};
 use d3dgen_model::world::World;
@@ -41,7 +43,7 @@ pub struct Edited {
 ///
 /// # Errors
 /// With the number of the edit (from 1): `Mismatch` when it names what is not there, `Refused` when it touches what is
-/// locked or asks for nothing, `Infeasible` when no repair keeps the hard rules; `Cancelled`.
+/// locked or asks for nothing, `Breaks` or `Infeasible` when no repair keeps the hard rules; `Cancelled`.
 pub fn apply(world: &World, edits: &[Edit], plugin: &dyn Plugin, stop: Stop<'_>) -> Result<Edited, Error> {
     let mut desk = Desk::new(world, plugin, stop);
     for (i, edit) in edits.iter().enumerate() {
@@ -69,6 +71,7 @@ fn numbered(number: usize, error: Error) -> Error {
         Error::Refused { stage, message } => Error::Refused { stage, message: at(message) },
         Error::Infeasible { stage, message } => Error::Infeasible { stage, message: at(message) },
         Error::Mismatch { stage, message } => Error::Mismatch { stage, message: at(message) },
+        Error::Breaks { stage, rule, subject, message } => Error::Breaks { stage, rule, subject, message: at(message) },
         other => other,
     }
 }
@@ -81,6 +84,8 @@ struct Desk<'a> {
     graph: SceneGraph,
     plan: Floorplan,
     placements: Placements,
+    /// What robots and people do; of the next scenario, that of those that are locked.
+    scenario: Scenario,
     retrieved: Retrieval,
     /// Rooms whose walls, openings or furniture changed.
     changed: BTreeSet<String>,
@@ -101,6 +106,7 @@ impl<'a> Desk<'a> {
             graph: SceneGraph { seed: world.floorplan.seed, ..world.scene_graph.clone() },
             plan: world.floorplan.clone(),
             placements: world.placements.clone(),
+            scenario: world.scenario.clone(),
             retrieved: retrieve(&world.scene_graph, plugin),
             changed: BTreeSet::new(),
             held: BTreeSet::new(),
@@ -140,6 +146,11 @@ impl<'a> Desk<'a> {
             Edit::AddObject { room_id, object } => self.add(room_id, object),
             Edit::RemoveObject { placement_id } => self.remove(placement_id),
             Edit::Refurnish { room_id } => self.refurnish(room_id),
+            Edit::ChangeJob { robot_id, job_id, from, to, load_kg, seconds } => {
+                let change = tasks::JobChange { from: from.as_deref(), to, load_kg: *load_kg, seconds: *seconds };
+                tasks::change_job(&mut self.scenario, robot_id, job_id, &change)
+            }
+            Edit::ChangeSteps { agent_id, steps } => tasks::change_steps(&mut self.scenario, agent_id, steps),
             Edit::Lock { ids, locked, contents } => self.lock(ids, *locked, *contents),
         }
     }
@@ -181,8 +192,8 @@ impl<'a> Desk<'a> {
         // what a room does not do without would be there again
         let comes_back = self.left.iter().any(|([room, object], left)| self.count(room, object) > *left);
         if comes_back || broken(&found.1) > allowed {
-            let rule = first_broken(&found.1).or(breaks).unwrap_or_else(|| "what the room is furnished with".into());
-            return Err(infeasible(format!("it would break {rule}")));
+            let first = first_broken(&found.1).or(breaks);
+            return Err(first.unwrap_or_else(|| infeasible("it would break what the room is furnished with".into())));
         }
         let changed = self.plan.rooms.iter().map(|r| &r.room_id).filter(|id| self.changed.contains(*id));
         let changed_room_ids = changed.cloned().collect();
@@ -197,7 +208,15 @@ impl<'a> Desk<'a> {
     fn assembled(&self, before: &World) -> Result<(World, Report), Error> {
         let graph = SceneGraph { seed: before.scene_graph.seed, ..self.graph.clone() };
         let made = (self.plan.clone(), self.placements.clone());
-        finish(&before.name, graph, made, self.plugin.domain(), &self.retrieved, before.brief.clone())
+        finish(
+            &before.name,
+            graph,
+            made,
+            self.plugin.domain(),
+            &self.retrieved,
+            before.brief.clone(),
+            Some(&self.scenario),
+        )
     }
 
     fn lock(&mut self, ids: &[String], locked: bool, contents: bool) -> Result<(), Error> {
@@ -215,11 +234,15 @@ impl<'a> Desk<'a> {
             self.plan.doors.iter_mut().for_each(|d| set(&d.door_id, &mut d.locked));
             self.plan.windows.iter_mut().for_each(|w| set(&w.window_id, &mut w.locked));
             self.placements.placements.iter_mut().for_each(|p| set(&p.placement_id, &mut p.locked));
+            self.scenario.robots.iter_mut().for_each(|r| set(&r.robot_id, &mut r.locked));
+            self.scenario.agents.iter_mut().for_each(|a| set(&a.agent_id, &mut a.locked));
             if contents {
                 self.placements.placements.iter_mut().filter(|p| &p.room_id == id).for_each(|p| p.locked = locked);
             }
             if !known {
-                return Err(mismatch(format!("the world has no room, wall, door, window or object `{id}`")));
+                return Err(mismatch(format!(
+                    "the world has no room, wall, door, window, object, robot or person `{id}`"
+                )));
             }
         }
         Ok(())
@@ -238,9 +261,13 @@ fn differs(before: &Floorplan, after: &Floorplan, room_id: &str) -> bool {
     outline(before) != outline(after) || doors(before) != doors(after) || windows(before) != windows(after)
 }
 
-/// Returns the first hard rule that a world breaks, and where.
-fn first_broken(report: &Report) -> Option<String> {
-    report.rules.iter().find_map(|r| Some(format!("{}: {}", r.rule, r.violations.first()?.message)))
+/// Returns what to say of the first hard rule that a world breaks.
+fn first_broken(report: &Report) -> Option<Error> {
+    report.rules.iter().find_map(|r| {
+        let first = r.violations.first()?;
+        let message = format!("it would break {}: {}", r.rule, first.message);
+        Some(Error::Breaks { stage: "edit", rule: r.rule.clone(), subject: first.subject.clone(), message })
+    })
 }
 
 fn broken(report: &Report) -> usize {

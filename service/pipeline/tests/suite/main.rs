@@ -9,6 +9,7 @@ mod corridors;
 mod details;
 mod edit;
 mod edit_storeys;
+mod edit_tasks;
 mod fleets;
 mod forms;
 mod homes;

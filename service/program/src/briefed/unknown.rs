@@ -7,7 +7,6 @@ use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
 
 use super::{Notes, roles};
-use crate::request::refused;
 
 /// Kinds that a refusal names.
 const NEAREST: usize = 3;
@@ -23,12 +22,12 @@ pub(super) struct Stand {
 /// Returns what the rooms of a building are planned as of which nobody knows the kind; `name` is what the brief calls it.
 ///
 /// # Errors
-/// `Refused` with the kinds that are called most alike, where too few rooms are listed to make a building.
+/// `UnknownBuilding` with the kinds that are called most alike, where too few rooms are listed to make a building.
 pub(super) fn stand_in(name: &str, brief: &Brief, registry: &Registry, notes: &mut Notes) -> Result<Stand, Error> {
     let stand = &roles().unknown_building;
     let rooms = brief.asks.iter().filter(|a| matches!(a.fact, Fact::Rooms(_))).count();
     if rooms < LEAST_ROOMS || registry.get(&stand.domain).is_none() {
-        return Err(refused(message(name, brief, registry)));
+        return Err(unknown(name, brief, registry));
     }
     let what = stand.building_type.replace('_', " ");
     let message = format!("`{name}` is no kind of building that is known; its rooms were planned as those of a {what}");
@@ -67,10 +66,10 @@ pub(super) fn guessed(brief: &Brief, registry: &Registry) -> Option<Note> {
 /// Returns the refusal of a brief that says nothing.
 pub(super) fn nothing_said(brief: &Brief, registry: &Registry) -> Error {
     let words: Vec<&str> = brief.not_understood.iter().map(|w| w.text.as_str()).collect();
-    refused(message(&words.join(" "), brief, registry))
+    unknown(&words.join(" "), brief, registry)
 }
 
-fn message(name: &str, brief: &Brief, registry: &Registry) -> String {
+fn unknown(name: &str, brief: &Brief, registry: &Registry) -> Error {
     let language = brief.languages.first().map_or("en", String::as_str);
     let named = brief.other_buildings.iter().filter(|b| b.domain.is_some()).map(|b| b.name.clone());
     let mut kinds: Vec<String> = named.take(NEAREST).collect();
@@ -79,13 +78,12 @@ fn message(name: &str, brief: &Brief, registry: &Registry) -> String {
             kinds.push(kind);
         }
     }
-    let domains: Vec<&str> = registry.iter().map(|p| p.id()).collect();
-    format!(
-        "no domain knows a kind of building called `{name}`; the nearest are {}; there are kinds of the domains {}; name one, list the rooms that it has, or plan them with `--domain {}`",
-        kinds.join(", "),
-        domains.join(", "),
-        roles().unknown_building.domain
-    )
+    Error::UnknownBuilding {
+        name: name.to_owned(),
+        nearest: kinds,
+        domains: registry.iter().map(|p| p.id().to_owned()).collect(),
+        fallback: roles().unknown_building.domain.clone(),
+    }
 }
 
 /// Returns the kinds of buildings that are called most alike, one name each, in a language or else in English.

@@ -5,9 +5,9 @@ use d3dgen_model::domain::{Adjacency, AdjacencyRelation};
 use d3dgen_model::scene_graph::{BY_CIRCULATION, BY_HOST, BY_PROMPT, BY_STYLE, Connector, GraphEdge, GraphRoom, Note};
 use d3dgen_model::style::LayoutStyle;
 
-use super::hosts::are_public;
+use super::hosts::{are_public, is_beside};
 use super::rooms;
-use crate::built::growth::way_through;
+use crate::built::growth::{hub_hall, way_through};
 use crate::built::planned::Planned;
 use crate::named::compounds::opens_to;
 use crate::named::numbered::is_meant;
@@ -78,8 +78,7 @@ pub(crate) fn connect_storey(
 /// Returns the index of the room all others open to: a hub of the domain, a new corridor, or the only room.
 fn hub(reading: &mut Reading, planned: &[Planned], rooms: &mut Vec<GraphRoom>) -> usize {
     let circulation = &reading.domain.circulation;
-    let by_type = circulation.hub_room_types.iter().find_map(|t| rooms.iter().position(|r| &r.room_type == t));
-    let by_type = by_type.or_else(|| way_through(reading, planned));
+    let by_type = hub_hall(reading, planned).or_else(|| way_through(reading, planned));
     let free: Vec<usize> = (0..planned.len()).filter(|&i| planned[i].host.is_none()).collect();
     let forbidden = reading.wishes.forbidden.contains(&circulation.room_type);
     match (by_type, free.as_slice()) {
@@ -173,8 +172,8 @@ impl Web {
                 continue;
             }
             if pair.belongs {
-                let pairs =
-                    if are_public(reading, &pair) { spread(rooms, &from, &to, Spread::Each) } else { Vec::new() };
+                let beside = are_public(reading, &pair) || is_beside(reading, &pair);
+                let pairs = if beside { spread(rooms, &from, &to, Spread::Each) } else { Vec::new() };
                 for (i, j) in pairs {
                     if !self.has_apart(&rooms[i].id, &rooms[j].id) {
                         self.put(rooms, (i, j), Connector::Door, false, BY_PROMPT);

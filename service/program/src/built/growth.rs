@@ -36,13 +36,27 @@ const TIGHT: f64 = 1.1;
 
 /// Returns the share of the net area that goes to corridors: none where a hall takes their part.
 pub(crate) fn circulation_share(reading: &Reading, rooms: &[Planned]) -> f64 {
-    let hubs = &reading.domain.circulation.hub_room_types;
-    if rooms.len() < 2 || rooms.iter().any(|r| hubs.contains(&r.room_type)) || way_through(reading, rooms).is_some() {
+    if rooms.len() < 2 || hub_hall(reading, rooms).is_some() || way_through(reading, rooms).is_some() {
         return 0.0;
     }
     let stairs = stairs_share(reading);
     // halls of a home with stairs are short
     if stairs > 0.0 { HALLS_SHARE + stairs } else { CIRCULATION_SHARE }
+}
+
+/// Walls of a hall twice as long as wide at which rooms can lie, a fifth of them left for its own windows and ways out, m for each
+/// root of its area.
+const WALLS_M: f64 = 0.8 * 4.24;
+
+/// Returns the index of the hall of the domain that all other rooms open to; none where its walls are too short for them.
+pub(crate) fn hub_hall(reading: &Reading, rooms: &[Planned]) -> Option<usize> {
+    let types = &reading.domain.circulation.hub_room_types;
+    let hub = types.iter().find_map(|t| rooms.iter().position(|r| &r.room_type == t))?;
+    let reckoned: f64 = rooms.iter().map(Planned::reckoned_m2).sum();
+    let area = rooms[hub].reckoned_m2() * reading.area_m2.map_or(1.0, |area| area / reckoned);
+    let others = rooms.iter().enumerate().filter(|(i, r)| *i != hub && r.host.is_none());
+    let around: f64 = others.map(|(_, r)| r.kind.min_dimension_m).sum();
+    (around <= WALLS_M * area.sqrt()).then_some(hub)
 }
 
 /// Rooms that open to the one that is the way of a small home, at most: they have its walls.

@@ -1,10 +1,10 @@
 //! Rooms that are entered through others: which room is the host of each en suite, closet and terrace.
 
 use d3dgen_knowledge::jurisdiction::rules_here;
-use d3dgen_model::domain::{Access, AdjacencyRelation, Privacy, RoomType, Zone};
+use d3dgen_model::domain::{Access, AdjacencyRelation, Domain, Privacy, RoomType, Zone};
 use d3dgen_model::offer;
 use d3dgen_model::offer::sleeps;
-use d3dgen_model::scene_graph::Note;
+use d3dgen_model::scene_graph::{Note, SceneGraph};
 
 use super::vital;
 use crate::built::planned::Planned;
@@ -13,6 +13,9 @@ use crate::subject::programs::{is_dwelling, is_office};
 use crate::tokens::storey::Where;
 use crate::tokens::words::words;
 use crate::wished::wishes::{Pair, PerHost};
+
+/// Code of the note that one of several bathrooms belongs to the main bedroom.
+const EN_SUITE: &str = "en_suite";
 
 /// Returns the type of the room that comes with every host: the one that is named, or where that is no room entered through
 /// another the one for the same use that is: "every room has a bathroom" of a hospital means its en suites.
@@ -103,20 +106,17 @@ pub(super) fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         // "on the second floor a terrace": not that of the living room below
         let elsewhere = |h: usize| storeys[i].is_some_and(|at| storeys[h].is_some_and(|other| other != at));
         let hosted = room.kind.access == Access::Host;
-        // the closet of a suite is entered from its bedroom, not through the bathroom that the suite has too
-        let through_bath = |p: &&Pair| {
-            let bath = domain.room_type(&p.b).is_some_and(|k| k.access == Access::Host && k.wet);
-            hosted && bath && !room.kind.hosts.contains(&p.b)
-        };
-        let belongs = pairs.iter().find(|p| p.a == room.room_type).filter(|p| !through_bath(p));
-        // "management with boardroom": nobody meets behind somebody's office
-        let shared = room.kind.privacy != Privacy::Private && room.kind.zone == Zone::Day && !hosted;
-        let through = |p: &&Pair| domain.room_type(&p.b).is_some_and(|k| k.privacy == Privacy::Private);
-        let works = is_office(reading.program);
-        let belongs = belongs.filter(|p| !(works && shared && through(p)));
+        // "management with boardroom": nobody meets behind somebody's office; a closet is not entered through a bathroom
+        let through = |p: &&Pair| domain.room_type(&p.b).is_some_and(|host| !room.kind.may_hang_on(host));
+        let belongs = pairs.iter().find(|p| p.a == room.room_type).filter(|p| !through(p));
         // "lobby with counters": the public goes on from one to the other, those who work there do not
         let belongs = belongs.filter(|p| !are_public(reading, p));
         if !hosted && belongs.is_none() {
+            continue;
+        }
+        // "seclusion room with an anteroom": one goes in through it
+        if let Some(behind) = belongs.and_then(|pair| behind_lock(domain, rooms, i, pair)) {
+            rooms[behind].host = Some(i);
             continue;
         }
         let fits = |h: &Planned| match belongs {
@@ -153,8 +153,37 @@ pub(super) fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
                 format!("{} has no room to be entered from; it opens to the circulation instead", room.kind.label);
             reading.assumptions.push(Note::new("no_host", message));
         }
-        rooms[i].host = host;
+        rooms[i].host = host.filter(|&h| hosted || leads_to(rooms[h].kind, rooms[i].kind));
     }
+}
+
+/// Returns true where one may come to a room through another: nobody goes to the preparation through the operating room, which is
+/// private, but to a bathroom through the bedroom that it is given to.
+fn leads_to(outer: &RoomType, inner: &RoomType) -> bool {
+    outer.privacy != Privacy::Private || inner.wet || outer.access == Access::Host && outer.hosts.contains(&inner.id)
+}
+
+/// Returns true for a pair of rooms of which the second is private, so that the first is beside it and not behind it.
+pub(super) fn is_beside(reading: &Reading, pair: &Pair) -> bool {
+    let of = |id: &str| reading.domain.room_type_or_generic(id);
+    let (inner, outer) = (of(&pair.a), of(&pair.b));
+    pair.belongs && inner.access != Access::Host && !leads_to(outer, inner)
+}
+
+/// Returns the room that a lock of a pair is the way into: one more of the pair's that has none yet. Locks serve, and are the way
+/// (`hosts`) to rooms larger than themselves.
+fn behind_lock(domain: &Domain, rooms: &[Planned], lock: usize, pair: &Pair) -> Option<usize> {
+    let kind = rooms[lock].kind;
+    let larger = |t: &RoomType| t.area_m2.target > kind.area_m2.target && !t.wet;
+    let before = |t: &RoomType| t.access == Access::Host && t.hosts.contains(&kind.id) && larger(t);
+    let locks = matches!(kind.zone, Zone::Service | Zone::Circulation) && kind.access != Access::Host;
+    let free = |r: &Planned| {
+        r.room_type == pair.b && r.host.is_none() && r.kind.access != Access::Host && (larger(r.kind) || r.name.is_some())
+    };
+    if !locks || !domain.room_types.iter().any(before) {
+        return None;
+    }
+    rooms.iter().position(free)
 }
 
 /// Lets the only bathroom of a home open to its hall where those of other bedrooms would have to go through one to it.
@@ -211,5 +240,26 @@ pub(super) fn give_main_bedroom_a_bath(reading: &mut Reading, rooms: &mut [Plann
         rooms[bath].called = Some(kind.label.clone());
     }
     let message = "of several bathrooms one is entered from the main bedroom".to_owned();
-    reading.assumptions.push(Note::new("en_suite", message));
+    reading.assumptions.push(Note::new(EN_SUITE, message));
+}
+
+/// Lets the bathroom that the main bedroom was given open to the hall where the others on its storey have none; returns true where
+/// it did. Which storey that is, is known of a draft of the rooms.
+pub(crate) fn share_bath_of_storey(reading: &mut Reading, rooms: &mut [Planned], draft: &SceneGraph) -> bool {
+    let given = |note: &Note| note.code == EN_SUITE;
+    let d = &words().dwelling;
+    let own = |r: &Planned| r.room_type == d.bathroom && r.host.is_some();
+    let Some(bath) = rooms.iter().position(own).filter(|_| reading.assumptions.iter().any(given)) else { return false };
+    let level = |i: usize| draft.rooms.get(i).map(|r| r.level);
+    let here = |i: &usize| level(*i) == level(bath);
+    let others = (0..rooms.len()).filter(|i| here(i) && Some(*i) != rooms[bath].host);
+    let asleep = others.filter(|&i| sleeps(reading.domain, rooms[i].kind).is_some() && rooms[i].host.is_none()).count();
+    let bathes = |r: &Planned| reading.wet.is_bathroom(r.kind) || r.room_type == d.shower;
+    let shared = (0..rooms.len()).filter(here).any(|i| bathes(&rooms[i]) && rooms[i].host.is_none());
+    if asleep == 0 || shared {
+        return false;
+    }
+    (rooms[bath].host, rooms[bath].called) = (None, None);
+    reading.assumptions.retain(|note| !given(note));
+    true
 }

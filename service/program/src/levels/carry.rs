@@ -1,10 +1,10 @@
 //! Storeys that would be smaller than the one that stands on them get rooms more, of those that the domain has for that, and their
-//! rooms grow: what is larger than the storey below hangs in the air. Which rooms come down for that is in `deal`.
+//! rooms grow: what is larger than the storey below hangs in the air. Rooms come down from a storey that nothing would carry.
 
 use d3dgen_model::domain::RoomType;
 use d3dgen_model::scene_graph::{GraphRoom, Note};
 
-use super::deal;
+use super::deal::{self, Cluster, Likes, Load};
 use super::storeys::Wanted;
 use crate::built::planned::Planned;
 use crate::built::rooms::tenth;
@@ -23,6 +23,9 @@ const ROOMY: f64 = 1.3;
 const MOST_TO_CARRY: f64 = 1.4;
 const ENOUGH: f64 = 1.1;
 
+/// Share of a storey that the one below has at least before rooms which the prompt puts above come down, and up to which they do.
+const FOUNDATION: f64 = 0.4;
+const CARRIES: f64 = 0.75;
 /// Lets the rooms of a storey that people use grow beyond what their types have, where those above it are about as large or larger.
 pub(super) fn grow(planned: &[Planned], rooms: &mut [GraphRoom], (lower, upper): (i32, i32)) {
     let (below, above) = (deal::area_on(rooms, lower), deal::area_on(rooms, upper));
@@ -39,6 +42,38 @@ pub(super) fn grow(planned: &[Planned], rooms: &mut [GraphRoom], (lower, upper):
             room.area_range_m2[1] = room.area_range_m2[1].max(tenth(most));
         }
     }
+}
+
+/// Moves rooms that the prompt puts on a storey down to the one below where that has next to nothing to carry them with; those go
+/// first that belong on the ground. Returns what moved, and where to.
+pub(super) fn stand_on_ground(
+    at: &mut [Option<i32>],
+    clusters: &[Cluster],
+    (above, used): (&[i32], &[bool]),
+    load: &Load<'_>,
+) -> Vec<(usize, i32)> {
+    let mut moved = Vec::new();
+    for pair in above.windows(2).rev() {
+        let [lower, upper] = [pair[0], pair[1]];
+        let carried = |at: &[Option<i32>]| load(at, clusters, lower) / load(at, clusters, upper).max(1.0);
+        if carried(at) >= FOUNDATION {
+            continue;
+        }
+        while carried(at) < CARRIES {
+            let gap = load(at, clusters, upper) - load(at, clusters, lower);
+            let moves = |i: usize| used[i] || clusters[i].likes == Likes::Ground;
+            let here = |i: &usize| at[*i] == Some(upper) && clusters[*i].likes != Likes::Each && moves(*i);
+            let several = (0..clusters.len()).filter(here).count() > 1;
+            let fits = |i: &usize| clusters[*i].area < gap && several;
+            let rank = |i: usize| (clusters[i].likes != Likes::Ground, clusters[i].likes == Likes::Upper);
+            let off = |i: usize| (clusters[i].area - gap / 2.0).abs();
+            let order = |a: &usize, b: &usize| rank(*a).cmp(&rank(*b)).then(off(*a).total_cmp(&off(*b)));
+            let Some(i) = (0..clusters.len()).filter(here).filter(fits).min_by(order) else { break };
+            at[i] = Some(lower);
+            moved.push((i, lower));
+        }
+    }
+    moved
 }
 
 /// Adds rooms to storeys that are smaller than the one above, where the prompt leaves the rooms open.

@@ -27,9 +27,6 @@ const MOST_SPREAD: f64 = 1.2;
 /// How much larger a storey of a home may be than the one below, and how often areas are scaled until it is not.
 const EVEN: f64 = 0.01;
 const ROUNDS: usize = 4;
-/// Share of a storey that the one below has at least before rooms which the prompt puts above come down, and up to which they do.
-const FOUNDATION: f64 = 0.4;
-const CARRIES: f64 = 0.75;
 /// Rooms of a storey from which on a building has two stairs whatever its domain says.
 const TWO_STAIRS: usize = 16;
 /// The least floor of such a storey beside its corridor, m^2: on less all rooms are within 35 m of one stair (ASR A2.3).
@@ -44,17 +41,17 @@ const LARGE_ROOMS_M2: f64 = 120.0;
 const LIFTS: [&str; 4] = ["elevator_a", "elevator_b", "elevator_c", "elevator_d"];
 
 /// Rooms that stay together, with the storey they must or would be on.
-struct Cluster<'p> {
+pub(super) struct Cluster<'p> {
     rooms: Vec<usize>,
     /// Unit of a large building that they belong to.
     unit: Option<&'p str>,
-    area: f64,
+    pub area: f64,
     fixed: Option<i32>,
-    likes: Likes,
+    pub likes: Likes,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Likes {
+pub(super) enum Likes {
     Ground,
     Upper,
     Each,
@@ -166,7 +163,7 @@ pub(crate) fn deal(reading: &mut Reading, planned: &[Planned], areas: &[f64], le
     }
     let used: Vec<bool> = clusters.iter().map(|c| c.rooms.iter().any(|&r| is_used(planned[r].kind))).collect();
     settle(&mut at, &mut clusters, (&above, &used), &load);
-    let moved = stand_on_ground(&mut at, &clusters, (&above, &used), &load);
+    let moved = carry::stand_on_ground(&mut at, &clusters, (&above, &used), &load);
     for (i, to) in moved.into_iter().filter(|(i, _)| told[*i]) {
         let names: Vec<&str> = clusters[i].rooms.iter().map(|&r| planned[r].kind.label.as_str()).collect();
         let names = names.join(", ").to_lowercase();
@@ -296,40 +293,8 @@ fn settle(at: &mut [Option<i32>], clusters: &mut [Cluster], (above, used): (&[i3
     }
 }
 
-/// Moves rooms that the prompt puts on a storey down to the one below where that has next to nothing to carry them with; those go
-/// first that belong on the ground. Returns what moved, and where to.
-fn stand_on_ground(
-    at: &mut [Option<i32>],
-    clusters: &[Cluster],
-    (above, used): (&[i32], &[bool]),
-    load: &Load<'_>,
-) -> Vec<(usize, i32)> {
-    let mut moved = Vec::new();
-    for pair in above.windows(2).rev() {
-        let [lower, upper] = [pair[0], pair[1]];
-        let carried = |at: &[Option<i32>]| load(at, clusters, lower) / load(at, clusters, upper).max(1.0);
-        if carried(at) >= FOUNDATION {
-            continue;
-        }
-        while carried(at) < CARRIES {
-            let gap = load(at, clusters, upper) - load(at, clusters, lower);
-            let moves = |i: usize| used[i] || clusters[i].likes == Likes::Ground;
-            let here = |i: &usize| at[*i] == Some(upper) && clusters[*i].likes != Likes::Each && moves(*i);
-            let several = (0..clusters.len()).filter(here).count() > 1;
-            let fits = |i: &usize| clusters[*i].area < gap && several;
-            let rank = |i: usize| (clusters[i].likes != Likes::Ground, clusters[i].likes == Likes::Upper);
-            let off = |i: usize| (clusters[i].area - gap / 2.0).abs();
-            let order = |a: &usize, b: &usize| rank(*a).cmp(&rank(*b)).then(off(*a).total_cmp(&off(*b)));
-            let Some(i) = (0..clusters.len()).filter(here).filter(fits).min_by(order) else { break };
-            at[i] = Some(lower);
-            moved.push((i, lower));
-        }
-    }
-    moved
-}
-
 /// Adds up the areas of a storey.
-type Load<'f> = dyn Fn(&[Option<i32>], &[Cluster], i32) -> f64 + 'f;
+pub(super) type Load<'f> = dyn Fn(&[Option<i32>], &[Cluster], i32) -> f64 + 'f;
 
 /// Returns true for rooms that a storey is there for: all but those that serve others.
 pub(super) fn is_used(kind: &RoomType) -> bool {

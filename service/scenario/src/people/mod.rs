@@ -6,6 +6,7 @@
 
 mod access;
 mod ground;
+mod kept;
 mod rounds;
 mod stations;
 
@@ -21,6 +22,7 @@ use d3dgen_model::{Point, Pose};
 
 use access::Access;
 use ground::Building;
+pub(crate) use kept::keep as keep_steps;
 use rounds::Writer;
 
 /// People at most, all roles together, who are there from the start.
@@ -226,6 +228,7 @@ fn person(
         spotlight: round.is_some_and(|r| r.spotlight),
         leaves: round.is_some_and(|r| r.leaves),
         begins_s: 0.0,
+        locked: false,
         steps,
         agent_id,
     })

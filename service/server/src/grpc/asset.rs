@@ -1,7 +1,7 @@
 //! `AssetService`.
 
 mod change;
-mod files;
+pub(crate) mod files;
 mod upload;
 
 use d3dgen_assets::catalog::Catalog;

@@ -1,7 +1,7 @@
 //! `WorldService`.
 
 mod edit;
-pub(in crate::grpc) mod export;
+pub(crate) mod export;
 mod generate;
 mod import;
 mod simulate;
@@ -26,13 +26,13 @@ use d3dgen_plugins::Plugin;
 use d3dgen_proto::v1::world_service_server::WorldService;
 use d3dgen_proto::v1::{
     AssembleWorldRequest, AssembleWorldResponse, BatchWorld, BuildingRequest, CheckWorldRequest, CheckWorldResponse,
-    CheckedWorld, EditWorldRequest, EditWorldResponse, ExportWorldRequest, ExportWorldResponse, Exporter,
-    GenerateBatchRequest, GenerateBatchResponse, GenerateBriefRequest, GenerateBriefResponse, GenerateFloorplanRequest,
-    GenerateFloorplanResponse, GeneratePlacementsRequest, GeneratePlacementsResponse, GenerateScenarioRequest,
-    GenerateScenarioResponse, GenerateSceneGraphRequest, GenerateSceneGraphResponse, GenerateWorldRequest,
-    GetBatchWorldRequest, GetBatchWorldResponse, ImportFloorplanRequest, ImportFloorplanResponse,
-    ListBatchWorldsRequest, ListBatchWorldsResponse, ListExportersRequest, ListExportersResponse, RankedFloorplan,
-    SimulateWorldRequest, SimulateWorldResponse,
+    CheckedWorld, EditWorldRequest, EditWorldResponse, ExportBatchRequest, ExportBatchResponse, ExportWorldRequest,
+    ExportWorldResponse, Exporter, GenerateBatchRequest, GenerateBatchResponse, GenerateBriefRequest,
+    GenerateBriefResponse, GenerateFloorplanRequest, GenerateFloorplanResponse, GeneratePlacementsRequest,
+    GeneratePlacementsResponse, GenerateScenarioRequest, GenerateScenarioResponse, GenerateSceneGraphRequest,
+    GenerateSceneGraphResponse, GenerateWorldRequest, GetBatchWorldRequest, GetBatchWorldResponse,
+    ImportFloorplanRequest, ImportFloorplanResponse, ListBatchWorldsRequest, ListBatchWorldsResponse,
+    ListExportersRequest, ListExportersResponse, RankedFloorplan, SimulateWorldRequest, SimulateWorldResponse,
 };
 use tonic::{Request, Response, Status};
 
@@ -143,7 +143,8 @@ impl WorldService for Api {
                 return Err(invalid("hour", format!("`{hour}` is no hour; there are {}", hours::ids().join(", "))));
             }
             let brief = brief::of_plan(&graph.prompt, Some(&plan), &now.registry);
-            let wishes = Wishes { name: &asked.name, hour: asked.hour.as_deref(), brief: brief.as_ref() };
+            let (hour, brief) = (asked.hour.as_deref(), brief.as_ref());
+            let wishes = Wishes { name: &asked.name, hour, brief, kept: None };
             let made = scenario::generate_as(&graph, &plan, &placements, plugin.domain(), &wishes);
             let scenario = made.map_err(|e| status::stage("placements", e))?;
             Ok(GenerateScenarioResponse { scenario: Some(message(&scenario)) })
@@ -259,11 +260,7 @@ impl WorldService for Api {
         self.work(move |core, stop| {
             let world: World = document("world", asked.world)?;
             let found = report(core, &world)?;
-            if !found.is_writable() {
-                let broken = found.rules.iter().find(|r| r.violations.iter().any(|v| !v.given));
-                let first = broken.map_or("a hard rule", |r| r.rule.as_str());
-                return Err(Status::failed_precondition(format!("the world is not sound: it breaks {first}")));
-            }
+            export::refuse_unsound(&found, "the world")?;
             let mut files = export::files(core, &world, &asked.formats, stop)?;
             // whoever has the files can open the world again
             files.push(("report.json".into(), found.to_json().into_bytes()));
@@ -271,6 +268,15 @@ impl WorldService for Api {
             export::archive(files, stop, |chunk| ExportWorldResponse { chunk })
         })
         .await
+    }
+
+    type ExportBatchStream = export::Pieces<ExportBatchResponse>;
+
+    async fn export_batch(&self, request: Request<ExportBatchRequest>) -> Answer<Self::ExportBatchStream> {
+        let caller = caller(&request);
+        let asked = request.into_inner();
+        let id = batch_of(self.job_of(&asked.job_id, &caller)?)?.id;
+        self.work(move |core, stop| export::batch(core, &id, &asked, stop)).await
     }
 
     type SimulateWorldStream = export::Pieces<SimulateWorldResponse>;

@@ -7,13 +7,13 @@ use d3dgen_proto::v1::generate_world_response::Event;
 use d3dgen_proto::v1::world_edit::Edit;
 use d3dgen_proto::v1::{
     AmendKnowledgeRequest, AnyOf, AssembleWorldRequest, BuildingRequest, CheckWorldRequest, CheckedWorld, DomainFile,
-    EditWorldRequest, ExportWorldRequest, GenerateBatchRequest, GenerateBriefRequest, GenerateFloorplanRequest,
-    GeneratePlacementsRequest, GenerateScenarioRequest, GenerateSceneGraphRequest, GenerateWorldRequest,
-    GetBatchWorldRequest, GetDomainRequest, ImportFloorplanRequest, JobState, ListBatchWorldsRequest,
-    ListConstraintFiltersRequest, ListDomainsRequest, ListExportersRequest, ListJobLogsRequest, LockUpdate, ObjectMove,
-    ParseDomainRequest, RegisterDomainRequest, RemoveDomainRequest, RetrieveConstraintsRequest, RoomAddition,
-    RuleSentence, SearchAssetsRequest, SearchConstraintsRequest, SimulateWorldRequest, UndoKnowledgeChangeRequest,
-    WorldEdit,
+    EditWorldRequest, ExportBatchRequest, ExportWorldRequest, GenerateBatchRequest, GenerateBriefRequest,
+    GenerateFloorplanRequest, GeneratePlacementsRequest, GenerateScenarioRequest, GenerateSceneGraphRequest,
+    GenerateWorldRequest, GetBatchWorldRequest, GetDomainRequest, ImportFloorplanRequest, JobState,
+    ListBatchWorldsRequest, ListConstraintFiltersRequest, ListDomainsRequest, ListExportersRequest, ListJobLogsRequest,
+    LockUpdate, ObjectMove, ParseDomainRequest, RegisterDomainRequest, RemoveDomainRequest, RetrieveConstraintsRequest,
+    RoomAddition, RuleSentence, SearchAssetsRequest, SearchConstraintsRequest, SimulateWorldRequest,
+    UndoKnowledgeChangeRequest, WorldEdit,
 };
 use tonic::Code;
 use tonic_types::StatusExt;
@@ -407,6 +407,28 @@ async fn a_batch_runs_as_a_job() {
     let world = c.worlds.get_batch_world(get(12)).await.expect("there").into_inner().world.expect("one");
     assert!(world.report.expect("a report").sound);
     assert_eq!(code(c.worlds.get_batch_world(get(13)).await), Code::NotFound);
+
+    // all of them, and one of them, in an archive with a folder for each
+    let export = |seeds: &[u64]| ExportBatchRequest {
+        job_id: job.job_id.clone(),
+        seeds: seeds.to_vec(),
+        formats: vec!["plan".into()],
+    };
+    for (seeds, expected) in [(&[][..], &[10, 11, 12][..]), (&[11], &[11])] {
+        let mut stream = c.worlds.export_batch(export(seeds)).await.expect("files").into_inner();
+        let mut bytes = Vec::new();
+        while let Some(piece) = stream.message().await.expect("a piece") {
+            bytes.extend(piece.chunk);
+        }
+        let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).expect("an archive");
+        for seed in 10..13 {
+            for file in ["world.json", "report.json", "plan.svg"] {
+                let is_there = archive.by_name(&format!("world-{seed}/{file}")).is_ok();
+                assert_eq!(is_there, expected.contains(&seed), "{file} of {seed}");
+            }
+        }
+    }
+    assert_eq!(code(c.worlds.export_batch(export(&[13])).await), Code::NotFound);
     for id in ["../../etc", "job-99999999", ""] {
         let get = GetBatchWorldRequest { job_id: id.into(), seed: 1 };
         assert_eq!(code(c.worlds.get_batch_world(get).await), Code::NotFound, "{id}");

@@ -1,11 +1,13 @@
 //! Kept worlds: their states, who changes them, and their pictures.
 
+use d3dgen_proto::v1::asset_service_client::AssetServiceClient;
 use d3dgen_proto::v1::generate_world_response::Event;
 use d3dgen_proto::v1::library_service_client::LibraryServiceClient;
 use d3dgen_proto::v1::world_service_client::WorldServiceClient;
 use d3dgen_proto::v1::{
     CreateWorldRequest, DeleteWorldRequest, DuplicateWorldRequest, GetWorldRequest, KeptWorld,
-    ListWorldRevisionsRequest, ListWorldsRequest, ParseWorldRequest, RestoreWorldRequest, UpdateWorldRequest, World,
+    ListWorldRevisionsRequest, ListWorldsRequest, ParseWorldRequest, RestoreWorldRequest, SearchAssetsRequest,
+    UpdateWorldRequest, World,
 };
 use tonic::Code;
 use tonic::transport::Channel;
@@ -141,6 +143,26 @@ async fn the_plan_of_a_kept_world_has_an_address_and_an_etag() {
     let tag = format!("if-none-match: \"{}\"\r\n", kept.etag);
     let again = get(&server, &path, &tag).await;
     assert!(again.starts_with("HTTP/1.1 304") && !again.contains("<svg"), "{again}");
+    let model = get(&server, &format!("/worlds/{}/world.glb", kept.world_id), "").await;
+    assert!(model.starts_with("HTTP/1.1 200") && model.contains("model/gltf-binary") && model.contains("glTF"));
     assert!(get(&server, "/worlds/world_99/plan.svg", "").await.starts_with("HTTP/1.1 404"));
     assert!(get(&server, "/worlds/world_1/../../x", "").await.starts_with("HTTP/1.1 4"));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn assets_have_a_picture_and_a_model_at_an_address() {
+    let server = Server::start(&[]).await;
+    let mut assets = AssetServiceClient::new(server.channel().await);
+    let asked = SearchAssetsRequest { query: "desk".into(), domain_id: Some("office".into()), ..Default::default() };
+    let found = assets.search_assets(asked).await.expect("assets").into_inner().assets;
+    let id = found[0].asset.as_ref().expect("one").asset_id.clone();
+    for (file, kind, begins) in [("thumbnail.png", "image/png", "PNG"), ("model.glb", "model/gltf-binary", "glTF")] {
+        let path = format!("/models/{id}/{file}");
+        let whole = get(&server, &path, "").await;
+        assert!(whole.starts_with("HTTP/1.1 200") && whole.contains(kind) && whole.contains(begins), "{path}");
+        let etag = whole.lines().find_map(|line| line.strip_prefix("etag: ")).expect("an etag").trim().to_owned();
+        let again = get(&server, &path, &format!("if-none-match: {etag}\r\n")).await;
+        assert!(again.starts_with("HTTP/1.1 304") && !again.contains(begins), "{path}");
+    }
+    assert!(get(&server, "/models/Common/NoSuchThing/thumbnail.png", "").await.starts_with("HTTP/1.1 404"));
 }

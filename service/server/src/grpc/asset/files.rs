@@ -18,7 +18,7 @@ const FORMATS: [&str; 4] = ["usdz", "glb", "sdf", "json"];
 ///
 /// # Errors
 /// `NOT_FOUND`; `INVALID_ARGUMENT` for a format that is none; `FAILED_PRECONDITION` when its model is not kept.
-pub(super) fn of(core: &Core, asset_id: &str, formats: &[String]) -> Result<Vec<(String, Vec<u8>)>, Status> {
+pub(crate) fn of(core: &Core, asset_id: &str, formats: &[String]) -> Result<Vec<(String, Vec<u8>)>, Status> {
     if let Some(wrong) = formats.iter().find(|f| !FORMATS.contains(&f.as_str())) {
         return Err(invalid("formats", format!("`{wrong}` is no format; there are {}", FORMATS.join(", "))));
     }
@@ -51,6 +51,16 @@ pub(super) fn of(core: &Core, asset_id: &str, formats: &[String]) -> Result<Vec<
         files.push((format!("{folder}/{name}.json"), annotation.to_json().into_bytes()));
     }
     Ok(files)
+}
+
+/// Returns the thumbnail of an asset by its id, as [`thumbnail`] does.
+///
+/// # Errors
+/// `NOT_FOUND`, and what the database refuses.
+pub(crate) fn thumbnail_of(core: &Core, asset_id: &str) -> Result<Vec<u8>, Status> {
+    let now = core.domains.now();
+    let asset = super::shelf(core, &now.catalog)?.get(asset_id).map_err(status::assets)?;
+    thumbnail(core, &now, &asset)
 }
 
 /// Returns the thumbnail of an asset, PNG: the one kept with it, or one drawn now; empty when its model is not kept.

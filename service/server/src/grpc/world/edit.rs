@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 
 use d3dgen_model::Document;
-use d3dgen_model::edits::{Edit as Planned, Edits};
+use d3dgen_model::edits::{Edit as Planned, Edits, StepKept};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 use d3dgen_pipeline::{Stop, edit};
 use d3dgen_proto::v1::world_edit::Edit;
-use d3dgen_proto::v1::{ObjectMove, WorldEdit};
+use d3dgen_proto::v1::{JobChange, ObjectMove, WorldEdit};
 use prost::{Message, Name};
 use prost_types::FieldMask;
 use serde::Serialize;
@@ -101,6 +101,15 @@ fn one(world: &mut World, field: &str, edit: Edit) -> Result<Option<Planned>, St
         }
         Edit::AddedObject(a) => return Ok(Some(Planned::AddObject { room_id: a.room_id, object: a.object })),
         Edit::RefurnishedRoomId(room_id) => return Ok(Some(Planned::Refurnish { room_id })),
+        Edit::ChangedJob(c) => {
+            let JobChange { robot_id, job_id, from_poi_id, to_poi_ids: to, load_kg, seconds } = c;
+            let from = given(from_poi_id);
+            return Ok(Some(Planned::ChangeJob { robot_id, job_id, from, to, load_kg, seconds }));
+        }
+        Edit::ChangedSteps(c) => {
+            let steps = c.steps.into_iter().map(|s| StepKept { number: s.number, seconds: s.seconds }).collect();
+            return Ok(Some(Planned::ChangeSteps { agent_id: c.agent_id, steps }));
+        }
     }
     Ok(None)
 }
@@ -177,6 +186,16 @@ fn lock(world: &mut World, field: &str, ids: &[String], contents: bool, locked: 
     for placement in &mut world.placements.placements {
         if found(&placement.placement_id) || inside(&placement.room_id) {
             placement.locked = locked;
+        }
+    }
+    for robot in &mut world.scenario.robots {
+        if found(&robot.robot_id) {
+            robot.locked = locked;
+        }
+    }
+    for agent in &mut world.scenario.agents {
+        if found(&agent.agent_id) {
+            agent.locked = locked;
         }
     }
     match left.first() {

@@ -18,7 +18,7 @@ use crate::grpc::Api;
 use crate::grpc::domain::plugin;
 use crate::grpc::outbox::{Inbox, Outbox, Weight};
 use crate::pool::{self, Lane, Stop, StopOnDrop};
-use crate::status::{self, invalid};
+use crate::status::{self, invalid, reason};
 
 /// Attempts of one call at most.
 const ATTEMPTS: u32 = 100;
@@ -76,7 +76,8 @@ impl Api {
                 if !allow && !contradicting.is_empty() {
                     let said = contradicting.join("; ");
                     let field = if from == "building" { "building.prompt" } else { "scene_graph.conflicts" };
-                    return Err(invalid(field, format!("contradicts itself: {said}; or set allow_conflicts")));
+                    let refused = invalid(field, format!("contradicts itself: {said}; or set allow_conflicts"));
+                    return Err(status::because_of(reason::CONTRADICTS, &[("conflicts", &said)], &refused));
                 }
                 told.hear(Event::Finished(Stage::SceneGraph, 0, Artifact::SceneGraph(&graph)));
                 let made = furnish_and_check(&graph, &now.registry, &settings, &mut |e| told.hear(e), stop);
