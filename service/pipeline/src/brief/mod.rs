@@ -69,9 +69,13 @@ fn in_its_kind(brief: &Brief, graph: SceneGraph, request: &Request, registry: &R
     let domain = named.and_then(|b| b.domain.as_ref()).filter(|d| **d != graph.domain && request.domain.is_none());
     let Some(domain) = domain else { return Ok(graph) };
     let flagged = Request { domain: Some(domain.clone()), ..request.clone() };
-    let mut graph = scene_graph::generate_with(brief, &flagged, registry)?;
-    graph.conflicts.retain(|note| note.code != BY_FLAG);
-    Ok(graph)
+    let mut other = scene_graph::generate_with(brief, &flagged, registry)?;
+    // two kinds of offices are near enough
+    if scene_graph::is_home(&other, registry) == scene_graph::is_home(&graph, registry) {
+        return Ok(graph);
+    }
+    other.conflicts.retain(|note| note.code != BY_FLAG);
+    Ok(other)
 }
 
 /// Returns the rooms that were made of the words, or those of the brief alone where these keep more of what it asks for.

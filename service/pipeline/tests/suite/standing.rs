@@ -120,7 +120,9 @@ fn what_stands_between_neighbors_fills_its_plot() {
 #[test]
 fn lorries_come_to_one_side_of_a_warehouse() {
     let mut held = Vec::new();
-    for prompt in ["Warehouse of 1500 m2 with five loading docks and an office", "Lagerhalle mit drei Laderampen, 900 m2"] {
+    for prompt in
+        ["Warehouse of 1500 m2 with five loading docks and an office", "Lagerhalle mit drei Laderampen, 900 m2"]
+    {
         for world in worlds(prompt, 4) {
             let docks: Vec<&String> = rooms(&world, "loading_dock").map(|r| &r.room_id).collect();
             let gates = world.floorplan.doors.iter().filter(|d| matches!(&d.room_ids[..], [id] if docks.contains(&id)));
@@ -173,7 +175,10 @@ fn nobody_goes_through_a_bedroom_to_the_bath_of_their_storey() {
 
 #[test]
 fn one_robot_has_one_dock() {
-    for prompt in ["flat with two living rooms and three bedrooms for a robot vacuum", "Villa mit Wohnzimmer, Familienzimmer und Saugroboter"] {
+    for prompt in [
+        "flat with two living rooms and three bedrooms for a robot vacuum",
+        "Villa mit Wohnzimmer, Familienzimmer und Saugroboter",
+    ] {
         for world in worlds(prompt, 3) {
             let docks = world.placements.placements.iter().filter(|p| p.object.contains("dock")).count();
             assert_eq!(docks, 1, "{prompt}");

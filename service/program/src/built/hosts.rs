@@ -178,7 +178,10 @@ fn behind_lock(domain: &Domain, rooms: &[Planned], lock: usize, pair: &Pair) -> 
     let before = |t: &RoomType| t.access == Access::Host && t.hosts.contains(&kind.id) && larger(t);
     let locks = matches!(kind.zone, Zone::Service | Zone::Circulation) && kind.access != Access::Host;
     let free = |r: &Planned| {
-        r.room_type == pair.b && r.host.is_none() && r.kind.access != Access::Host && (larger(r.kind) || r.name.is_some())
+        r.room_type == pair.b
+            && r.host.is_none()
+            && r.kind.access != Access::Host
+            && (larger(r.kind) || r.name.is_some())
     };
     if !locks || !domain.room_types.iter().any(before) {
         return None;
