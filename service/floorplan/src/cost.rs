@@ -625,16 +625,7 @@ impl<'b> Judge<'b> {
             let boxes: Vec<_> = rooms.iter().filter_map(|r| Some((r.main?, r.gross_m2))).collect();
             score.symmetry = mirror::cost(wish, &boxes, door);
         }
-        let rectangular = match (brief.compact, brief.party) {
-            (true, _) => 1.0,
-            (_, Some(_)) => NOTCHED_IN_ROW,
-            _ if layout.bar => NOTCHED_BAR,
-            _ => 0.0,
-        };
-        if rectangular > 0.0 && brief.form.is_none() {
-            let around = layout.boxes.iter().map(|(_, b)| *b).reduce(Cellbox::around);
-            score.open = rectangular * around.map_or(0.0, |all| 1.0 - total / all.area_m2());
-        }
+        score.open = self.rectangular(layout) * open_share(&layout.boxes);
         // one station stands where it sees most doors; several share the beds out
         if self.stations.len() > 1 {
             let far = self.ways_to_stations(layout).map(|way| (way - NEAR_STATION_M).max(0.0));
@@ -694,6 +685,17 @@ impl<'b> Judge<'b> {
         })
     }
 
+    /// Returns how much it counts that a layout leaves open a part of the rectangle around it, 0 to 1.
+    fn rectangular(&self, layout: &Layout) -> f64 {
+        match (self.brief.form, self.brief.compact, self.brief.party) {
+            (Some(_), ..) => 0.0,
+            (_, true, _) => 1.0,
+            (.., Some(_)) => NOTCHED_IN_ROW,
+            _ if layout.bar => NOTCHED_BAR,
+            _ => 0.0,
+        }
+    }
+
     /// Returns how many gates for vehicles are not at the side of the building that most of their kind are at: lorries have one yard.
     fn gates_apart(&self) -> usize {
         let holds = |room: usize, side: usize| {
@@ -734,6 +736,12 @@ impl<'b> Judge<'b> {
         let larger = [Some(bedroom), hall].into_iter().flatten().filter(|room| room.net_m2 > living.net_m2);
         larger.map(|room| WRONG_SIZES + 2.0 * (room.net_m2 / living.net_m2.max(1.0) - 1.0)).sum()
     }
+}
+
+/// Returns the share of the rectangle around some boxes that they leave open.
+pub(crate) fn open_share(boxes: &[(usize, Cellbox)]) -> f64 {
+    let around = boxes.iter().map(|b| b.1).reduce(Cellbox::around).map_or(1.0, |all| all.area_m2());
+    1.0 - boxes.iter().map(|b| b.1.area_m2()).sum::<f64>() / around
 }
 
 /// Returns the wall of a box that counts as its own, m.

@@ -13,6 +13,7 @@ use d3dgen_model::style::Form;
 use super::align::align;
 use super::assemble::{Turn, assemble, turned_in_place};
 use super::core::{Below, Core, in_core, merged, overhang};
+use super::cost::open_share;
 use super::genome::is_nestable;
 use super::lattice::{CELL_M2, Cellbox, INNER_HALF_M, meters, nearest};
 use super::party::Party;
@@ -28,19 +29,18 @@ const FEW_PLANS: usize = 3;
 /// Plans of a storey that are compared when the first ones jut out further.
 const COMPARED: usize = 6;
 const COMPARED_LARGE: usize = 2;
-/// How often a home is stacked at most, what a share of a storey counts that juts out, and one that the storey above leaves open,
-/// and how ragged a stack of short ways may be that is taken at once.
+/// How often a home is stacked at most, and how ragged a stack may be that is taken at once.
 const STACKS: usize = 4;
+const WELL_STACKED: f64 = 0.06;
 /// The same of other buildings that are no wings, where a storey juts out further than it may without a word.
 const STACKS_OF_OTHERS: usize = 3;
+/// What makes a stack ragged: the share of a storey that juts out, that which the one above leaves open, in homes that of the rectangle
+/// around it which it leaves open, and the share of hall and stairs beyond the usual one.
 const JUTS: f64 = 3.0;
 const SET_BACK: f64 = 0.3;
-/// Share of a storey of a home that is hall and stairs from which on that counts too, what more of it counts, and what the share
-/// of the rectangle around it counts that it leaves open.
+const NOTCHED: f64 = 0.3;
 const USUAL_WAY: f64 = 0.2;
 const LONG_WAY: f64 = 0.6;
-const NOTCHED: f64 = 0.3;
-const WELL_STACKED: f64 = 0.06;
 /// Longest storey, about, that is one bar between two stairs, m: others walk less in wings.
 const LONGEST_BAR_M: f64 = 64.0;
 /// Heights of storeys are whole multiples of this, m.
@@ -354,12 +354,6 @@ fn storey(
 fn way_share(plan: &Floorplan) -> f64 {
     let ways = plan.rooms.iter().filter(|r| r.circulation).map(|r| r.net_area_m2);
     ways.sum::<f64>() / net_area_m2(plan).max(1.0)
-}
-
-/// Returns the share of the rectangle around some boxes that they leave open.
-fn open_share(boxes: &[(usize, Cellbox)]) -> f64 {
-    let around = boxes.iter().map(|b| b.1).reduce(Cellbox::around).map_or(1.0, |all| all.area_m2());
-    1.0 - boxes.iter().map(|b| b.1.area_m2()).sum::<f64>() / around
 }
 
 /// Returns the boxes of rooms that people sleep, live or work in.

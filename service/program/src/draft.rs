@@ -406,7 +406,7 @@ impl<'r, 'a> Draft<'r, 'a> {
             let desks_told = if lives { 0 } else { self.counted.desks_told() };
             let people = (people, desks_told);
             let main = closed::add_main_room(wishes, program, domain, people, named.as_deref(), layout);
-            self.notes.assumptions.extend(main);
+            self.notes.conflicts.extend(main);
         }
         Ok(())
     }

@@ -1,36 +1,44 @@
 //! What became of everything that the brief asks for: each fact measured in the finished world, from its documents alone.
 //!
-//! A fact is honored when the world has what it says, whoever put it there. What is not there as asked is answered with what
-//! is there instead, or with the reason; what no document can tell is said to be left out, never to be there.
+//! A fact is honored when the world has what it says, whoever put it there: in the rooms that it says, which are those that the
+//! wish for them became ([`claims`]), and nowhere else. What is not there as asked is answered with what is there instead, or with
+//! the reason; what no document can tell is said to be left out, never to be there.
 
+mod claims;
+mod objects;
+mod people;
 mod places;
 mod relations;
+mod robots;
+mod rooms;
 mod subjects;
 mod whole;
 
-use std::collections::BTreeSet;
-
-use d3dgen_model::brief::{Ask, AskedCount, Brief, Fact, ObjectsAsk, RoomsAsk, Subject};
+use d3dgen_model::brief::{Ask, AskedCount, Brief, Fact, PromptWords, Subject};
 use d3dgen_model::domain::Domain;
-use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom};
 use d3dgen_model::report::{AskAnswer, Fate};
 use d3dgen_model::scene_graph::GraphRoom;
 use d3dgen_model::world::World;
 
-use self::subjects::Found;
+use self::claims::{Claims, Kinds};
 
 /// Share by which a floor area or side that was asked for may be missed.
 const MEASURE_MISS: f64 = 0.05;
-/// Attribute of rooms that people in wheelchairs use.
-const ACCESSIBLE: &str = "accessible";
-/// Letters of a word from which a conflict that has it is taken to speak of the wish that has it too.
+/// Letters of a name from which a conflict that has it is taken to speak of the wish that has it too; names in scripts whose words are
+/// short have fewer.
 const TELLING_LETTERS: usize = 4;
+/// Code of the conflict that lists all words that nobody understood: it speaks of no wish.
+const NOT_UNDERSTOOD: &str = "not_understood";
+/// Rooms and things that a reason names, at most.
+const MOST_NAMED: usize = 4;
 
 /// What the answers are looked up in.
 struct Asked<'a> {
     brief: &'a Brief,
     world: &'a World,
     domain: &'a Domain,
+    kinds: Kinds<'a>,
+    claims: Claims<'a>,
 }
 
 /// What was found of one fact, before it is written down.
@@ -61,20 +69,15 @@ impl Finding {
         if holds { Self::honored(ids) } else { Self { ids, ..Self::of(Fate::LeftOut, reason()) } }
     }
 
-    /// Returns what a number of things comes to: fewer or more than asked are a substitute, none are left out.
-    fn counted(count: AskedCount, ids: Vec<String>, what: &str) -> Self {
-        let n = ids.len() as u32;
-        Self { ids, ..Self::number(count, n, what) }
-    }
-
-    /// Returns what a number comes to.
-    fn number(count: AskedCount, n: u32, what: &str) -> Self {
+    /// Returns what so many of a number asked for come to: fewer or more are a substitute, none are left out. The reason is asked
+    /// for where the number is not kept.
+    fn number(count: AskedCount, n: u32, reason: impl FnOnce() -> String) -> Self {
         let fate = match (count.allows(n), n) {
             (true, _) => Fate::Honored,
             (false, 0) => Fate::LeftOut,
             (false, _) => Fate::Substituted,
         };
-        let reason = if fate == Fate::Honored { String::new() } else { format!("{count} {what} asked for, {n} built") };
+        let reason = if fate == Fate::Honored { String::new() } else { reason() };
         Self { asked: Some(f64::from(count.n)), measured: Some(f64::from(n)), ..Self::of(fate, reason) }
     }
 
@@ -97,20 +100,31 @@ impl Finding {
             ..worse
         }
     }
+
+    /// Returns it with the ids of what answers it.
+    fn with(self, ids: Vec<String>) -> Self {
+        Self { ids, ..self }
+    }
+
+    /// Returns something near to it where it was left out.
+    fn or_near(self) -> Self {
+        Self { fate: self.fate.min(Fate::Substituted), ..self }
+    }
 }
 
 /// Returns what became of each thing that a brief asks for, in the order of the brief.
 pub fn answers(brief: &Brief, world: &World, domain: &Domain) -> Vec<AskAnswer> {
-    let asked = Asked { brief, world, domain };
-    brief.asks.iter().map(|ask| asked.answer(ask)).collect()
+    let kinds = Kinds::of(domain, world.scene_graph.building_type.as_deref());
+    let asked = Asked { brief, world, domain, kinds, claims: Claims::of(brief, world, &kinds) };
+    brief.asks.iter().enumerate().map(|(at, ask)| asked.answer(at, ask)).collect()
 }
 
-impl Asked<'_> {
-    fn answer(&self, ask: &Ask) -> AskAnswer {
-        let mut found = self.find(&ask.fact);
-        if found.fate != Fate::Honored
-            && let Some(message) = self.told_of(ask)
-        {
+impl<'a> Asked<'a> {
+    fn answer(&self, at: usize, ask: &Ask) -> AskAnswer {
+        let mut found = self.find(at, ask).and(self.unread_part(ask));
+        // what is there and of another kind or not wholly read is not what a conflict is about
+        let is_short = found.fate == Fate::LeftOut || found.fate == Fate::Substituted && found.asked.is_some();
+        if is_short && let Some(message) = self.told_of(&ask.fact) {
             found.fate = Fate::Contradicted;
             found.reason = if found.reason.is_empty() { message } else { format!("{}; {message}", found.reason) };
         }
@@ -127,244 +141,108 @@ impl Asked<'_> {
         }
     }
 
-    fn find(&self, fact: &Fact) -> Finding {
-        match fact {
-            Fact::Rooms(rooms) => self.rooms(rooms),
-            Fact::Objects(objects) => self.objects(objects),
-            Fact::Capacity(capacity) => self.capacity(capacity),
-            Fact::Relation(relation) => self.relation(relation),
+    fn find(&self, at: usize, ask: &Ask) -> Finding {
+        match &ask.fact {
+            Fact::Rooms(rooms) => self.rooms(at, ask, rooms),
+            Fact::Objects(objects) => self.objects(ask, objects),
+            Fact::Capacity(capacity) => self.capacity(ask, capacity),
+            Fact::Relation(relation) => self.relation(ask, relation),
             Fact::Storeys(storeys) => self.storeys(storeys),
             Fact::Area(area) => self.area(area),
-            Fact::Robots(robots) => self.robots(robots),
+            Fact::Robots(robots) => self.robots(ask, robots),
             Fact::People(people) => self.people(people),
             Fact::Style(style) => self.style(style),
-            Fact::Accessible(access) => self.accessible(access),
-            Fact::Forbidden(forbidden) => self.forbidden(forbidden),
+            Fact::Accessible(access) => self.accessible(ask, access),
+            Fact::Forbidden(forbidden) => self.forbidden(ask, forbidden),
             Fact::Only(only) => self.only(only),
             Fact::Site(site) => self.site(site),
-            Fact::Other(other) => Finding::of(Fate::LeftOut, format!("nothing here builds `{}`", other.wish)),
+            Fact::Other(_) => Finding::of(Fate::LeftOut, "nothing here builds that".into()),
         }
     }
 
-    /// Returns the conflict or assumption of the world that has one of the words of a wish.
-    fn told_of(&self, ask: &Ask) -> Option<String> {
-        let words: Vec<String> = ask.words.iter().map(|w| w.text.to_lowercase()).collect();
-        let telling = |w: &&str| w.chars().count() >= TELLING_LETTERS && w.chars().any(char::is_alphabetic);
-        let words: Vec<&str> = words.iter().flat_map(|w| w.split_whitespace()).filter(telling).collect();
+    /// Returns what of a wish for something was not read: a word that touches its own says what it is to be, a "massage" chair.
+    fn unread_part(&self, ask: &Ask) -> Finding {
+        let is_thing = matches!(ask.fact, Fact::Rooms(_) | Fact::Objects(_) | Fact::Capacity(_) | Fact::Robots(_));
+        let Some(own) = ask.words.last().filter(|_| is_thing) else { return Finding::honored(Vec::new()) };
+        let own = named_in(own, &ask.fact);
+        let unread: Vec<String> =
+            self.brief.not_understood.iter().filter(|w| self.touch(&own, w)).map(|w| format!("`{}`", w.text)).collect();
+        let reason = || format!("{} was not understood", unread.join(" and "));
+        Finding::when(unread.is_empty(), Vec::new(), reason).or_near()
+    }
+
+    /// Returns true for words of the prompt with nothing between them but a blank, a hyphen or an apostrophe.
+    fn touch(&self, a: &PromptWords, b: &PromptWords) -> bool {
+        let (first, second) = if a.start <= b.start { (a, b) } else { (b, a) };
+        let gap = second.start.saturating_sub(first.end);
+        let is_joint = |c: char| c == ' ' || matches!(c, '-' | '\'' | '\u{2019}' | '\u{2011}');
+        self.brief.prompt.chars().skip(first.end as usize).take(gap as usize).all(is_joint)
+    }
+
+    /// Returns the conflict of the world that speaks of what a fact names.
+    fn told_of(&self, fact: &Fact) -> Option<String> {
+        let subjects: Vec<&Subject> = match fact {
+            Fact::Rooms(rooms) => vec![&rooms.room],
+            Fact::Objects(objects) => vec![&objects.object],
+            Fact::Relation(relation) => vec![&relation.a, &relation.b],
+            _ => return None,
+        };
         let graph = &self.world.scene_graph;
         let said = graph.conflicts.iter().chain(&self.world.floorplan.conflicts);
-        said.map(|n| &n.message).find(|m| words.iter().any(|w| m.to_lowercase().contains(w))).cloned()
+        let said = said.filter(|n| n.code != NOT_UNDERSTOOD);
+        said.map(|n| &n.message).find(|m| subjects.iter().all(|s| names(m, s))).cloned()
     }
 
-    fn rooms(&self, asked: &RoomsAsk) -> Finding {
-        if asked.among {
-            return self.some_rooms(asked);
-        }
-        let found = self.rooms_called(&asked.room);
-        let there = self.meant(asked, &found.rooms);
-        let ids = || there.iter().map(|r| r.id.clone()).collect::<Vec<_>>();
-        let mut out = Finding::counted(asked.count, ids(), &asked.room.label());
-        if there.len() < found.rooms.len() && out.fate != Fate::Honored {
-            out.reason =
-                format!("{} of {} {} lie on the storey asked for", there.len(), found.rooms.len(), asked.room.label());
-        }
-        if there.is_empty() {
-            return out;
-        }
-        let plans: Vec<&PlanRoom> = there.iter().filter_map(|r| self.world.floorplan.room(&r.id)).collect();
-        if let Some(area) = asked.area_m2 {
-            let farthest =
-                plans.iter().map(|p| p.net_polygon.area()).max_by(|a, b| (a - area).abs().total_cmp(&(b - area).abs()));
-            out = out.and(Finding::measure(area, farthest.unwrap_or(0.0), MEASURE_MISS, ("m2", "the floor is")));
-        }
-        if let Some(sides) = asked.sides_m {
-            out = out.and(sides_of(&plans, sides));
-        }
-        for attribute in &asked.attributes {
-            out = out.and(self.attribute(attribute, &there));
-        }
-        match &asked.each {
-            Some(each) => out.and(self.one_each(&there, each)),
-            None => out,
-        }
-    }
-
-    /// Returns the rooms of a name that are meant on the storey asked for. Where their number is not the one asked for, those that
-    /// the brief asks for by a name of their own do not count (the four-bed room among "6 patient rooms"), and at last only those
-    /// of the very type.
-    fn meant<'r>(&self, asked: &RoomsAsk, called: &[&'r GraphRoom]) -> Vec<&'r GraphRoom> {
-        let on_level = |r: &&GraphRoom| asked.level.is_none_or(|level| r.level == level);
-        let all: Vec<&GraphRoom> = called.iter().copied().filter(on_level).collect();
-        let others = self.named_elsewhere(&asked.room);
-        let narrower = all.iter().copied().filter(|r| !others.contains(r.room_type.as_str())).collect::<Vec<_>>();
-        let exact = all.iter().copied().filter(|r| asked.room.id.as_ref() == Some(&r.room_type)).collect::<Vec<_>>();
-        let kept = |rooms: &Vec<&GraphRoom>| asked.count.allows(rooms.len() as u32);
-        if kept(&all) {
-            return all;
-        }
-        // "5 inbound docks ... 3 outbound docks" are eight
-        let (before, after) = self.asked_beside(asked);
-        if before + after > 0 && all.len() as u32 == before + asked.count.n + after {
-            return all.into_iter().skip(before as usize).take(asked.count.n as usize).collect();
-        }
-        [narrower, exact].into_iter().find(kept).unwrap_or(all)
-    }
-
-    /// Returns how many of the same rooms on the same storey other facts ask for, before this one and after it.
-    fn asked_beside(&self, asked: &RoomsAsk) -> (u32, u32) {
-        let rooms =
-            self.brief.asks.iter().filter_map(|a| if let Fact::Rooms(rooms) = &a.fact { Some(rooms) } else { None });
-        let same =
-            |r: &&RoomsAsk| r.room.id.is_some() && r.room.id == asked.room.id && r.level == asked.level && !r.among;
-        let all: Vec<&RoomsAsk> = rooms.filter(same).collect();
-        let at = all.iter().position(|r| std::ptr::eq(*r, asked)).unwrap_or(all.len());
-        let sum = |rooms: &[&RoomsAsk]| rooms.iter().map(|r| r.count.n).sum();
-        (sum(&all[..at]), sum(all.get(at + 1..).unwrap_or_default()))
-    }
-
-    /// Answers for some of the rooms that another fact asks for: so many of them are to be as it says.
-    fn some_rooms(&self, asked: &RoomsAsk) -> Finding {
-        let called = self.rooms_called(&asked.room).rooms;
-        let all: Vec<&GraphRoom> = self.world.scene_graph.rooms.iter().filter(|r| r.requested).collect();
-        let among = if called.is_empty() { all } else { called };
-        let is_so = |r: &&&GraphRoom| asked.attributes.iter().all(|a| self.has_itself(a, r));
-        let so: Vec<String> = among.iter().filter(is_so).map(|r| r.id.clone()).collect();
-        let words: Vec<String> = asked.attributes.iter().map(|a| a.replace('_', " ")).collect();
-        let what = format!("{} that are {}", asked.room.label(), words.join(" and "));
-        Finding::counted(asked.count, so, &what)
-    }
-
-    /// Returns whether one room is as an attribute says by itself: what holds for the whole building makes no difference among its
-    /// rooms.
-    fn has_itself(&self, attribute: &str, room: &GraphRoom) -> bool {
-        let typed = room.room_type.split('_').any(|part| part == attribute);
-        let whole = attribute == ACCESSIBLE && !self.world.scene_graph.accessible;
-        typed || !whole && self.attribute(attribute, &[room]).fate == Fate::Honored
-    }
-
-    /// Returns the types of rooms that the brief speaks of beside one.
-    fn named_elsewhere(&self, room: &Subject) -> BTreeSet<&str> {
-        let named = self.brief.asks.iter().filter_map(|ask| match &ask.fact {
-            Fact::Rooms(rooms) => Some(&rooms.room),
-            Fact::Objects(objects) => objects.room.as_ref(),
-            Fact::Capacity(capacity) => capacity.room.as_ref(),
-            _ => None,
-        });
-        named.filter_map(|subject| subject.id.as_deref()).filter(|id| room.id.as_deref() != Some(id)).collect()
-    }
-
-    /// Returns whether each of these rooms has a door to a room of its own of another kind.
-    fn one_each(&self, rooms: &[&GraphRoom], each: &Subject) -> Finding {
-        let wanted = self.rooms_called(each);
-        let has = |room: &&&GraphRoom| {
-            self.doors_between(&room.id, |other| wanted.rooms.iter().any(|w| w.id == other)).next().is_some()
-        };
-        let n = rooms.iter().filter(has).count();
-        let what = format!("{} with {} of their own", label_of(rooms), each.label());
-        Finding::number(AskedCount::at_least(rooms.len() as u32), n as u32, &what)
-    }
-
-    /// Returns whether rooms are as an attribute says; those that no document tells are left out, and said to be.
-    fn attribute(&self, attribute: &str, rooms: &[&GraphRoom]) -> Finding {
-        let plan = &self.world.floorplan;
-        let has_window = |r: &&GraphRoom| plan.windows.iter().any(|w| w.room_id == r.id);
-        let outdoors = |d: &Door| d.room_ids.len() == 1;
-        let wet = |id: &str| plan.room(id).is_some_and(|p| self.domain.room_type_or_generic(&p.room_type).wet);
-        let area = |r: &&GraphRoom| plan.room(&r.id).map_or(0.0, |p| p.net_polygon.area());
-        let usual = |r: &&GraphRoom| self.domain.room_type_or_generic(&r.room_type).area_m2.target;
-        let all = |holds: &dyn Fn(&&GraphRoom) -> bool| {
-            let missing: Vec<String> = rooms.iter().filter(|r| !holds(r)).map(|r| r.name.clone()).collect();
-            let reason = || format!("not {}: {}", attribute.replace('_', " "), missing.join(", "));
-            Finding::when(missing.is_empty(), Vec::new(), reason)
-        };
-        match attribute {
-            "with_window" => all(&has_window),
-            "windowless" => all(&|r| !has_window(r)),
-            ACCESSIBLE => all(&|_| self.world.scene_graph.accessible),
-            "open" => all(&|r| {
-                plan.doors_of(&r.id).any(|d| d.kind == DoorKind::Open)
-                    || self.domain.room_type_or_generic(&r.room_type).open_front
-            }),
-            "separate" | "closed" => all(&|r| plan.doors_of(&r.id).all(|d| d.kind != DoorKind::Open)),
-            "large" => all(&|r| area(r) >= usual(r)),
-            "small" => all(&|r| area(r) <= usual(r)),
-            "garden_door" | "outdoor_door" => all(&|r| plan.doors_of(&r.id).any(outdoors)),
-            "own_bathroom" => all(&|r| self.doors_between(&r.id, wet).next().is_some()),
-            "own_entrance" => all(&|r| plan.doors_of(&r.id).any(outdoors)),
-            other => self.named_so(other, rooms),
-        }
-    }
-
-    /// Returns whether rooms are of a type that has the attribute in its name: `double` of `patient_room_double`.
-    fn named_so(&self, attribute: &str, rooms: &[&GraphRoom]) -> Finding {
-        let named = |r: &&GraphRoom| r.room_type.split('_').any(|part| part == attribute);
-        let reason = || format!("no document tells whether rooms are `{}`", attribute.replace('_', " "));
-        Finding::when(rooms.iter().all(named), Vec::new(), reason)
-    }
-
-    fn objects(&self, asked: &ObjectsAsk) -> Finding {
-        let found = self.objects_called(&asked.object);
-        let label = asked.object.label();
-        let Some(room) = &asked.room else {
-            return Finding::counted(asked.count, found.ids(), &label).and(self.object_attributes(asked, &found));
-        };
-        let rooms = self.rooms_called(room);
-        let within = |id: &str| rooms.rooms.iter().any(|r| r.id == id);
-        let inside = Found {
-            placements: found.placements.iter().copied().filter(|p| within(&p.room_id)).collect(),
-            ..Found::default()
-        };
-        let what = format!("{label} in {}", room.label());
-        if rooms.rooms.is_empty() {
-            return Finding::of(Fate::LeftOut, format!("there is no {}", room.label()));
-        }
-        let counted = if asked.each_room {
-            let held = |r: &&GraphRoom| {
-                asked.count.allows(inside.placements.iter().filter(|p| p.room_id == r.id).count() as u32)
-            };
-            let n = rooms.rooms.iter().filter(|r| held(r)).count() as u32;
-            let each = format!("{} with {} {label} each", room.label(), asked.count);
-            Finding { ids: inside.ids(), ..Finding::number(AskedCount::at_least(rooms.rooms.len() as u32), n, &each) }
-        } else {
-            Finding::counted(asked.count, inside.ids(), &what)
-        };
-        if counted.fate == Fate::LeftOut && !found.placements.is_empty() {
-            let reason = format!("it stands elsewhere: {}", found.placements[0].room_id);
-            return Finding { fate: Fate::Substituted, reason, ids: found.ids(), ..counted };
-        }
-        counted.and(self.object_attributes(asked, &inside))
-    }
-
-    /// Returns whether objects are as asked: by the words of their type, or else by their size among those the type comes in.
-    fn object_attributes(&self, asked: &ObjectsAsk, found: &Found) -> Finding {
-        let missing = asked.attributes.iter().filter(|a| !found.placements.iter().any(|p| self.is_so(a, p)));
-        let missing: Vec<&str> = missing.map(String::as_str).collect();
-        if missing.is_empty() || found.placements.is_empty() {
-            return Finding::honored(Vec::new());
-        }
-        Finding::of(Fate::Substituted, format!("none that is known to be {}", missing.join(", ")))
+    /// Returns the storey that a fact is said of, where it is said.
+    fn level_of(&self, ask: &Ask) -> Option<i32> {
+        claims::level_said(self.brief, ask)
     }
 }
 
-/// Returns whether rooms have sides of these lengths, in either order.
-fn sides_of(rooms: &[&PlanRoom], sides: [f64; 2]) -> Finding {
-    let near = |a: f64, b: f64| (a - b).abs() <= MEASURE_MISS * b;
-    let fits = |p: &&PlanRoom| {
-        let b = p.net_polygon.bounds();
-        let (w, h) = (b.width(), b.height());
-        near(w, sides[0]) && near(h, sides[1]) || near(w, sides[1]) && near(h, sides[0])
+/// Returns the words of a fact that name what it asks for, of all that state it.
+fn named_in(words: &PromptWords, fact: &Fact) -> PromptWords {
+    let name = match fact {
+        Fact::Rooms(rooms) => &rooms.room.name,
+        Fact::Objects(objects) => &objects.object.name,
+        _ => return words.clone(),
     };
-    let wrong = rooms.iter().find(|p| !fits(p)).map(|p| p.net_polygon.bounds());
-    match wrong {
-        None => Finding::honored(Vec::new()),
-        Some(b) => {
-            let [long, short] = sides;
-            let reason = format!("sides are {:.2} x {:.2} m, {long} x {short} m asked for", b.width(), b.height());
-            Finding::of(Fate::Substituted, reason)
-        }
+    let Some(at) = words.text.find(name.as_str()).filter(|_| !name.is_empty()) else { return words.clone() };
+    let start = words.start + words.text[..at].chars().count() as u32;
+    PromptWords { start, end: start + name.chars().count() as u32, text: name.clone() }
+}
+
+/// Returns true for a message with the name or the id of something in it.
+fn names(message: &str, subject: &Subject) -> bool {
+    let message = message.to_lowercase();
+    let is_telling =
+        |word: &str| word.chars().count() >= TELLING_LETTERS || word.chars().nth(1).is_some() && !word.is_ascii();
+    let id = subject.id.clone().unwrap_or_default();
+    let words = [subject.name.to_lowercase(), id.replace('_', " "), id];
+    let ends = |c: Option<char>| c.is_none_or(|c| !c.is_alphanumeric());
+    words.iter().filter(|w| is_telling(w)).any(|word| {
+        message.match_indices(word.as_str()).any(|(at, _)| {
+            let own_letters = !word.is_ascii();
+            let before = message[..at].chars().next_back();
+            own_letters || ends(before) && ends(message[at + word.len()..].chars().next())
+        })
+    })
+}
+
+/// Returns the ids of rooms.
+fn ids_of(rooms: &[&GraphRoom]) -> Vec<String> {
+    rooms.iter().map(|r| r.id.clone()).collect()
+}
+
+/// Returns names as people list them: `Kitchen, Office 1 and 3 more`.
+fn listed(names: &[&str]) -> String {
+    let some = names.iter().take(MOST_NAMED).copied().collect::<Vec<_>>().join(", ");
+    match names.len().saturating_sub(MOST_NAMED) {
+        0 => some,
+        more => format!("{some} and {more} more"),
     }
 }
 
-fn label_of(rooms: &[&GraphRoom]) -> String {
-    rooms.first().map_or_else(String::new, |r| r.room_type.replace('_', " "))
+/// Returns the names of rooms as people list them.
+fn names_of(rooms: &[&GraphRoom]) -> String {
+    listed(&rooms.iter().map(|r| r.name.as_str()).collect::<Vec<_>>())
 }

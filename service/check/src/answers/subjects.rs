@@ -1,78 +1,85 @@
 //! Which rooms and objects of a world are meant by a name of the brief.
 
-use d3dgen_model::brief::Subject;
-use d3dgen_model::domain::Words;
+use d3dgen_model::brief::{Ask, Fact, RoomsAsk, Subject};
 use d3dgen_model::floorplan::Door;
 use d3dgen_model::placements::Placement;
 use d3dgen_model::scene_graph::GraphRoom;
 
 use super::Asked;
+use super::claims::{Likeness, as_id, has_word, is_kind_of};
 
-/// Id of the way into the building, which is no room: the rooms that one enters it through.
-const ENTRANCE: &str = "entrance";
-
-/// What goes by a name.
-#[derive(Default)]
-pub(super) struct Found<'a> {
-    pub rooms: Vec<&'a GraphRoom>,
-    pub placements: Vec<&'a Placement>,
-}
-
-impl Found<'_> {
-    /// Returns the ids of the placements.
-    pub fn ids(&self) -> Vec<String> {
-        self.placements.iter().map(|p| p.placement_id.clone()).collect()
-    }
-}
-
-/// Returns a name as ids are written: `Patient Room` is `patient_room`.
-fn as_id(name: &str) -> String {
-    let id: String = name.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
-    id.trim_matches('_').to_owned()
-}
-
-/// Returns true for an id that is another, or a kind of it: `patient_room_double` and `accessible_toilet` of `patient_room`
-/// and `toilet`.
-fn is_kind_of(id: &str, of: &str) -> bool {
-    id == of
-        || id.strip_prefix(of).is_some_and(|r| r.starts_with('_'))
-        || id.strip_suffix(of).is_some_and(|r| r.ends_with('_'))
-}
-
-/// Returns true when one of the words names it, in any language.
-fn has_word(words: &Words, name: &str) -> bool {
-    let name = name.to_lowercase();
-    words.values().flatten().any(|w| *w == name)
-}
+/// Attribute of what stands before a window.
+pub(super) const AT_WINDOW: &str = "at_window";
+/// Floor between a window and what stands at it, at most, m.
+const AT_WINDOW_M: f64 = 1.0;
 
 impl<'a> Asked<'a> {
-    /// Returns the rooms that go by a name: of its type or a kind of it; of a type that has the same word; called so in the plan.
-    pub fn rooms_called(&self, subject: &Subject) -> Found<'a> {
-        let name = as_id(&subject.name);
-        let id = subject.id.as_deref().unwrap_or(&name);
-        let is_so = |r: &&GraphRoom| {
-            if id == ENTRANCE {
-                return r.entrance;
+    /// Returns the rooms that go by a name: those that are likest to it where several kinds of rooms are.
+    pub fn rooms_called(&self, subject: &Subject) -> Vec<&'a GraphRoom> {
+        let rooms = &self.world.scene_graph.rooms;
+        let like = |r: &'a GraphRoom| Some((self.kinds.likeness(subject, r)?, r));
+        let found: Vec<(Likeness, &GraphRoom)> = rooms.iter().filter_map(like).collect();
+        // kinds of a type count with it, but where there are none of its own the likest do
+        let own = found.iter().any(|(likeness, _)| *likeness <= Likeness::Type);
+        found.into_iter().filter(|(likeness, _)| !own || *likeness <= Likeness::Type).map(|(_, r)| r).collect()
+    }
+
+    /// Returns the wishes for rooms that a name of another fact means: of the same name, or else of the same type.
+    fn wishes_for(&self, subject: &Subject) -> Vec<(usize, &'a Ask)> {
+        let rooms = |(at, ask): (usize, &'a Ask)| match &ask.fact {
+            Fact::Rooms(rooms) if !rooms.among => Some((at, ask, rooms)),
+            _ => None,
+        };
+        let all: Vec<(usize, &Ask, &RoomsAsk)> = self.brief.asks.iter().enumerate().filter_map(rooms).collect();
+        let named = |r: &RoomsAsk| r.room.name == subject.name && r.room.id == subject.id;
+        let typed = |r: &RoomsAsk| subject.id.is_some() && r.room.id == subject.id;
+        let by = |is_so: &dyn Fn(&RoomsAsk) -> bool| -> Vec<(usize, &'a Ask)> {
+            all.iter().filter(|(_, _, r)| is_so(r)).map(|(at, ask, _)| (*at, *ask)).collect()
+        };
+        let same = by(&named);
+        if same.is_empty() { by(&typed) } else { same }
+    }
+
+    /// Returns the rooms that a fact means by a name: those that the wish for rooms of that name became, of several wishes the one whose
+    /// words are nearest; else all that go by the name.
+    pub fn rooms_meant(&self, ask: &Ask, subject: &Subject) -> Vec<&'a GraphRoom> {
+        let start = |ask: &Ask| ask.words.last().map_or(0, |w| w.start);
+        let wishes = self.wishes_for(subject);
+        let nearest = wishes.iter().min_by_key(|(_, wish)| start(wish).abs_diff(start(ask)));
+        nearest.map_or_else(|| self.rooms_called(subject), |(at, _)| self.claims.rooms(*at).to_vec())
+    }
+
+    /// Returns all rooms that are meant by a name, whichever wish they became of.
+    pub fn all_meant(&self, subject: &Subject) -> Vec<&'a GraphRoom> {
+        let wishes = self.wishes_for(subject);
+        if wishes.is_empty() {
+            return self.rooms_called(subject);
+        }
+        let mut rooms: Vec<&GraphRoom> = Vec::new();
+        for room in wishes.iter().flat_map(|(at, _)| self.claims.rooms(*at)) {
+            if !rooms.iter().any(|r| r.id == room.id) {
+                rooms.push(room);
             }
-            let worded =
-                || self.domain.room_type_or_lent(&r.room_type).is_some_and(|t| has_word(&t.keywords, &subject.name));
-            is_kind_of(&r.room_type, id) || worded() || !name.is_empty() && is_kind_of(&as_id(&r.name), &name)
-        };
-        Found { rooms: self.world.scene_graph.rooms.iter().filter(is_so).collect(), ..Found::default() }
+        }
+        rooms
     }
 
-    /// Returns the objects that go by a name, as rooms do.
-    pub fn objects_called(&self, subject: &Subject) -> Found<'a> {
+    /// Returns the objects that go by a name: of its type or a kind of it, or of a type that has the same word.
+    pub fn objects_called(&self, subject: &Subject) -> Vec<&'a Placement> {
         let name = as_id(&subject.name);
         let id = subject.id.as_deref().unwrap_or(&name);
+        let shape = self.domain.object(id).map(|o| o.shape);
         let is_so = |p: &&Placement| {
-            let worded = || self.domain.object(&p.object).is_some_and(|o| has_word(&o.keywords, &subject.name));
-            is_kind_of(&p.object, id) || worded()
+            let kind = self.domain.object(&p.object);
+            let worded = || kind.is_some_and(|o| has_word(&o.keywords, &subject.name));
+            // a stand for a television is none, and a brush of a toilet is none either
+            let alike = || shape.is_none() || kind.map(|o| o.shape) == shape;
+            p.object == id || is_kind_of(&p.object, id) && alike() || worded()
         };
-        Found { placements: self.world.placements.placements.iter().filter(is_so).collect(), ..Found::default() }
+        self.world.placements.placements.iter().filter(is_so).collect()
     }
 
-    /// Returns true for an object of which its type, model or size tells that it is as an attribute says.
+    /// Returns true for an object of which its type, model, size or place tells that it is as an attribute says.
     pub fn is_so(&self, attribute: &str, placement: &Placement) -> bool {
         let named = |id: &str| id.split(['_', '/']).any(|part| part.eq_ignore_ascii_case(attribute));
         let sizes = self.domain.object(&placement.object).map_or(&[][..], |o| &o.sizes_m);
@@ -84,8 +91,15 @@ impl<'a> Asked<'a> {
             || match attribute {
                 "large" => usual.is_some_and(|usual| own > usual) || sizes.iter().all(|s| floor(s) <= own),
                 "small" => usual.is_some_and(|usual| own < usual) || sizes.iter().all(|s| floor(s) >= own),
+                AT_WINDOW => self.is_at_window(placement),
                 _ => false,
             }
+    }
+
+    fn is_at_window(&self, placement: &Placement) -> bool {
+        let windows = self.world.floorplan.windows.iter().filter(|w| w.room_id == placement.room_id);
+        let bounds = placement.footprint().bounds();
+        windows.into_iter().any(|w| w.line.bounds().distance(&bounds) <= AT_WINDOW_M + w.wall_thickness_m / 2.0)
     }
 
     /// Returns the passages from a room to those that `is_other` takes.
@@ -96,5 +110,15 @@ impl<'a> Asked<'a> {
     ) -> impl Iterator<Item = &'a Door> {
         let doors = self.world.floorplan.doors_of(room_id);
         doors.filter(move |d| d.room_ids.iter().any(|id| id != room_id && is_other(id)))
+    }
+
+    /// Returns the name on the plan of a room.
+    pub fn name_of(&self, room_id: &str) -> &'a str {
+        self.world.scene_graph.room(room_id).map_or("another room", |r| r.name.as_str())
+    }
+
+    /// Returns what people call an object of a type.
+    pub fn label_of(&self, object: &str) -> String {
+        self.domain.object(object).map_or_else(|| object.replace('_', " "), |o| o.label.to_lowercase())
     }
 }

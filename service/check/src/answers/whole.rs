@@ -1,16 +1,19 @@
-//! Facts about the building as a whole: storeys, floor, robots, manner, what is ruled out.
+//! Facts about the building as a whole: storeys, floor, access, manner, what is ruled out.
 
 use d3dgen_model::brief::{
-    AccessAsk, AreaAsk, AskedCount, Bound, ForbiddenAsk, OnlyAsk, RobotsAsk, SiteAsk, SiteKind, StoreysAsk, StyleAsk,
-    Subject,
+    AccessAsk, AreaAsk, Ask, AskedCount, Bound, ForbiddenAsk, OnlyAsk, SiteAsk, SiteKind, StoreysAsk, StyleAsk,
 };
+use d3dgen_model::courts;
 use d3dgen_model::domain::GENERIC_ROOM_TYPE;
+use d3dgen_model::offer::Wet;
 use d3dgen_model::report::Fate;
-use d3dgen_model::scene_graph::{GraphRoom, Robot};
-use d3dgen_model::style::{Style, StyleWord};
+use d3dgen_model::scene_graph::GraphRoom;
+use d3dgen_model::style::{Form, Style, StyleWord};
 
-use super::{Asked, Finding};
+use super::{Asked, Finding, ids_of, listed, names_of};
 
+/// The form of a building around open ground.
+const COURTYARD: StyleWord = StyleWord::Form(Form::Courtyard);
 /// Share by which the floor of a building may miss what was asked for: walls and corridors take what they need.
 const FLOOR_MISS: f64 = 0.15;
 
@@ -19,7 +22,8 @@ impl Asked<'_> {
         let mut levels: Vec<i32> = self.world.scene_graph.rooms.iter().map(|r| r.level).collect();
         levels.sort_unstable();
         levels.dedup();
-        let counted = Finding::number(asked.count, levels.len() as u32, "storeys");
+        let n = levels.len() as u32;
+        let counted = Finding::number(asked.count, n, || format!("{} asked for, {n} built", asked.count));
         let basement = !asked.basement || levels.iter().any(|l| *l < 0);
         counted.and(Finding::when(basement, Vec::new(), || "no basement is built".into()))
     }
@@ -33,53 +37,6 @@ impl Asked<'_> {
             Bound::Exactly | Bound::About => return found,
         };
         if kept { Finding { fate: Fate::Honored, reason: String::new(), ..found } } else { found }
-    }
-
-    pub(super) fn robots(&self, asked: &RobotsAsk) -> Finding {
-        let robots = &self.world.scene_graph.robots;
-        let kind = |r: &&Robot| asked.kind.is_empty() || r.kind == asked.kind;
-        let of_kind: Vec<&Robot> = robots.iter().filter(kind).collect();
-        let count = of_kind.iter().map(|r| r.count).sum();
-        let mut out = Finding::number(asked.count, count, &format!("{} robots", asked.kind));
-        if of_kind.is_empty() && !robots.is_empty() {
-            let kinds: Vec<&str> = robots.iter().map(|r| r.kind.as_str()).collect();
-            out = Finding::of(Fate::Substituted, format!("the robots are {}", kinds.join(", ")));
-        }
-        if let Some(width) = asked.width_m
-            && let Some(robot) = of_kind.first()
-        {
-            out = out.and(Finding::measure(width, robot.width_m(), super::MEASURE_MISS, ("m", "its width is")));
-        }
-        if let Some(misfit) = of_kind.iter().find(|r| r.misfit) {
-            out = out.and(Finding::of(Fate::Substituted, format!("the {} robot does not fit everywhere", misfit.kind)));
-        }
-        let places = asked.tasks.iter().flat_map(|t| t.from.iter().chain(&t.to));
-        let lacking: Vec<String> = places.filter(|s| !self.is_visited(s, &of_kind)).map(Subject::label).collect();
-        let out = out
-            .and(Finding::when(lacking.is_empty(), Vec::new(), || format!("no robot goes to {}", lacking.join(", "))));
-        let entered: Vec<String> = asked.keep_out.iter().filter(|s| !self.is_kept_out(s)).map(Subject::label).collect();
-        out.and(Finding::when(entered.is_empty(), Vec::new(), || format!("robots may enter {}", entered.join(", "))))
-    }
-
-    /// Returns true for rooms that robots go to: by name, or because they go wherever their kind works.
-    fn is_visited(&self, subject: &Subject, robots: &[&Robot]) -> bool {
-        let mut rooms = self.rooms_called(subject).rooms;
-        if rooms.is_empty() {
-            let things = self.objects_called(subject).placements;
-            let holds = |r: &&GraphRoom| things.iter().any(|p| p.room_id == r.id);
-            rooms = self.world.scene_graph.rooms.iter().filter(holds).collect();
-        }
-        let goes = |room: &GraphRoom| {
-            robots.iter().any(|r| {
-                let everywhere = r.stops.is_empty() && r.room_types.is_empty();
-                everywhere || r.stops.contains(&room.id) || r.room_types.contains(&room.room_type)
-            }) && !self.world.scene_graph.keeps_robots_out(&room.id)
-        };
-        rooms.iter().any(|r| goes(r))
-    }
-
-    fn is_kept_out(&self, subject: &Subject) -> bool {
-        self.rooms_called(subject).rooms.iter().all(|r| self.world.scene_graph.keeps_robots_out(&r.id))
     }
 
     /// A unit within a house is one where it has one storey; how a building stands among others changes no plan beside that.
@@ -97,38 +54,58 @@ impl Asked<'_> {
             Some(word) => {
                 let mut wished = Style::default();
                 wished.add(word);
-                let kept = wished.or(*style) == *style;
+                let courts = || !courts::between(&self.world.floorplan.rooms).is_empty();
+                let kept = wished.or(*style) == *style && (word != COURTYARD || courts());
                 Finding::when(kept, Vec::new(), || format!("the building is not planned {label}"))
             }
             None => Finding::of(Fate::LeftOut, format!("no stage here makes a building {label}")),
         }
     }
 
-    pub(super) fn accessible(&self, asked: &AccessAsk) -> Finding {
-        let holds = self.world.scene_graph.accessible;
-        let rooms = asked.room.as_ref().map(|room| self.rooms_called(room).rooms);
-        // an accessible room is a type of its own in many domains
-        let own = rooms.iter().flatten().filter(|r| r.room_type.split('_').any(|p| p == "accessible"));
-        let ids: Vec<String> = own.map(|r| r.id.clone()).collect();
-        Finding::when(holds || !ids.is_empty(), ids, || "the plan is not made for wheelchairs".into())
+    /// The rooms that are named, or the building with one toilet at least, are made for somebody in a wheelchair.
+    pub(super) fn accessible(&self, ask: &Ask, asked: &AccessAsk) -> Finding {
+        let Some(room) = &asked.room else {
+            let wet = Wet::of(self.domain);
+            let is_toilet =
+                |r: &&GraphRoom| self.domain.room_type_or_lent(&r.room_type).is_some_and(|k| wet.has_toilet(k));
+            let graph = &self.world.scene_graph;
+            let toilets: Vec<&GraphRoom> = graph.rooms.iter().filter(is_toilet).collect();
+            let own = toilets.is_empty() || toilets.iter().any(|r| self.is_accessible(r));
+            let planned = Finding::when(graph.accessible, Vec::new(), || "the plan is not made for wheelchairs".into());
+            return planned
+                .and(Finding::when(own, Vec::new(), || "no toilet is made for wheelchairs".into()).or_near());
+        };
+        let rooms = self.rooms_meant(ask, room);
+        let not: Vec<&GraphRoom> = rooms.iter().filter(|r| !self.is_accessible(r)).copied().collect();
+        let reason = || match rooms.len() {
+            0 => format!("there is no room `{}`", room.name),
+            _ => format!("not made for wheelchairs: {}", names_of(&not)),
+        };
+        Finding::when(not.is_empty() && !rooms.is_empty(), ids_of(&rooms), reason)
     }
 
-    pub(super) fn forbidden(&self, asked: &ForbiddenAsk) -> Finding {
+    pub(super) fn forbidden(&self, ask: &Ask, asked: &ForbiddenAsk) -> Finding {
         let mut ids: Vec<String> = Vec::new();
+        let mut names: Vec<String> = Vec::new();
         if let Some(room) = &asked.room {
             // "no private offices, 30 desks in the open plan"
             let wanted = self.named_elsewhere(room);
-            let found = self.rooms_called(room).rooms;
-            ids.extend(found.iter().filter(|r| !wanted.contains(r.room_type.as_str())).map(|r| r.id.clone()));
+            let found = self.rooms_called(room);
+            let found: Vec<&GraphRoom> = found.into_iter().filter(|r| !wanted.contains(r.room_type.as_str())).collect();
+            ids.extend(ids_of(&found));
+            names.extend(found.iter().map(|r| r.name.clone()));
         }
         if let Some(object) = &asked.object {
-            let rooms = asked.within.as_ref().map(|w| self.rooms_called(w).rooms);
+            let rooms = asked.within.as_ref().map(|w| self.rooms_meant(ask, w));
             let within = |id: &str| rooms.as_ref().is_none_or(|rooms| rooms.iter().any(|r| r.id == id));
-            let found = self.objects_called(object).placements;
-            ids.extend(found.iter().filter(|p| within(&p.room_id)).map(|p| p.placement_id.clone()));
+            let found = self.objects_called(object);
+            for placement in found.iter().filter(|p| within(&p.room_id)) {
+                ids.push(placement.placement_id.clone());
+                names.push(format!("{} in {}", self.label_of(&placement.object), self.name_of(&placement.room_id)));
+            }
         }
-        let reason = format!("{} is there", ids.first().map_or("", String::as_str));
-        Finding::when(ids.is_empty(), ids, || reason)
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        Finding::when(ids.is_empty(), ids, || format!("there is {}", listed(&names)))
     }
 
     /// Returns how many rooms there are as people count those of such a building: those to sleep in of a hotel.
@@ -142,14 +119,14 @@ impl Asked<'_> {
     pub(super) fn only(&self, asked: &OnlyAsk) -> Finding {
         let rooms: Vec<&GraphRoom> = self.world.scene_graph.rooms.iter().filter(|r| !r.circulation).collect();
         let counted = match asked.rooms {
-            Some(n) => Finding::number(AskedCount::exactly(n), self.rooms_counted(&rooms), "rooms"),
+            Some(n) => {
+                let there = self.rooms_counted(&rooms);
+                Finding::number(AskedCount::exactly(n), there, || format!("{n} rooms asked for, {there} built"))
+            }
             None => Finding::honored(Vec::new()),
         };
-        let added: Vec<String> = rooms.iter().filter(|r| asked.closed && !r.requested).map(|r| r.id.clone()).collect();
-        let reason = format!("{} rooms were added", added.len());
-        counted.and(Finding {
-            fate: if added.is_empty() { Fate::Honored } else { Fate::Substituted },
-            ..Finding::when(added.is_empty(), added, || reason)
-        })
+        let added: Vec<&GraphRoom> = rooms.iter().filter(|r| asked.closed && !r.requested).copied().collect();
+        let reason = || format!("added beside: {}", names_of(&added));
+        counted.and(Finding::when(added.is_empty(), ids_of(&added), reason).or_near())
     }
 }

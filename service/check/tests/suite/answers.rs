@@ -6,7 +6,7 @@ use d3dgen_check::check;
 use d3dgen_model::brief::{AreaAsk, SiteAsk, SiteKind};
 use d3dgen_model::brief::{
     Ask, AskedCount, AskedTask, Bound, Brief, CapacityAsk, Fact, ForbiddenAsk, ObjectsAsk, OnlyAsk, OtherAsk,
-    PeopleAsk, PlaceKind, RelationAsk, RelationKind, RobotsAsk, RoomsAsk, StoreysAsk, StyleAsk, Subject,
+    PeopleAsk, PlaceKind, PromptWords, RelationAsk, RelationKind, RobotsAsk, RoomsAsk, StoreysAsk, StyleAsk, Subject,
 };
 use d3dgen_model::domain::Shape;
 use d3dgen_model::report::{AskAnswer, Fate};
@@ -204,7 +204,7 @@ fn a_robot_answers_for_where_it_is_sent() {
 fn a_conflict_that_names_the_wish_is_its_reason() {
     let sample = &SAMPLES[FLAT];
     let prompt = "flat with a helipad";
-    let words = vec![d3dgen_model::brief::PromptWords::of(prompt, 12, 19)];
+    let words = vec![PromptWords::of(prompt, 12, 19)];
     let fact = Fact::Rooms(RoomsAsk { room: Subject::unknown("helipad"), ..RoomsAsk::default() });
     let ask = Ask { id: "ask_1".into(), words, read_by: Default::default(), fact };
     let mut world =
@@ -215,4 +215,169 @@ fn a_conflict_that_names_the_wish_is_its_reason() {
     assert_eq!(found.asks[0].fate, Fate::Contradicted);
     assert!(found.asks[0].reason.ends_with("no helipad is planned on a flat"));
     assert_eq!(found.wishes_met(), (0, 1));
+}
+
+/// Returns a brief of facts with the words of a prompt that state each.
+fn worded(prompt: &str, facts: &[(&str, Fact)], unread: &[&str]) -> Brief {
+    let words = |text: &str| {
+        let start = prompt.find(text).map(|at| prompt[..at].chars().count() as u32).unwrap();
+        PromptWords::of(prompt, start, start + text.chars().count() as u32)
+    };
+    let ask = |(i, (text, fact)): (usize, &(&str, Fact))| Ask {
+        id: format!("ask_{i}"),
+        words: vec![words(text)],
+        read_by: Default::default(),
+        fact: fact.clone(),
+    };
+    Brief {
+        asks: facts.iter().enumerate().map(ask).collect(),
+        not_understood: unread.iter().map(|text| words(text)).collect(),
+        ..Brief::of_prompt(prompt)
+    }
+}
+
+fn fates(sample: &Sample, world: &World, brief: Brief) -> Vec<Fate> {
+    let world = World { brief: Some(brief), ..world.clone() };
+    check(&world, sample.domain, &sample.retrieval).asks.iter().map(|a| a.fate).collect()
+}
+
+fn named(id: &str, name: &str) -> Fact {
+    Fact::Rooms(RoomsAsk { room: Subject::known(id, name), ..RoomsAsk::default() })
+}
+
+#[test]
+fn a_room_answers_one_wish_unless_it_is_named_again() {
+    let office = &SAMPLES[OFFICE];
+    let two = [
+        ("a podcast room", named("meeting_room", "podcast room")),
+        ("a photo room", named("meeting_room", "photo room")),
+    ];
+    let asked = worded("a podcast room and a photo room", &two, &[]);
+    assert_eq!(fates(office, &office.world, asked), [Fate::Honored, Fate::LeftOut], "one room for two");
+    let alike =
+        [("a meeting room", named("meeting_room", "room")), ("but no dust in the room", named("meeting_room", "room"))];
+    let same = worded("a meeting room, but no dust in the room", &alike, &[]);
+    assert_eq!(fates(office, &office.world, same), [Fate::Honored, Fate::Honored], "the same name again");
+    let sums = [
+        ("3 LDK", named("meeting_room", "3 LDK")),
+        ("3 LDK", named("reception", "3 LDK")),
+        ("with a quiet room", named("meeting_room", "quiet room")),
+    ];
+    let summed = fates(office, &office.world, worded("3 LDK with a quiet room", &sums, &[]));
+    assert_eq!([summed[0], summed[2]], [Fate::Honored, Fate::Honored], "what is summed up is named once more");
+    let again = worded("a podcast room. Lights in a photo room", &two, &[]);
+    assert_eq!(fates(office, &office.world, again), [Fate::Honored, Fate::Honored], "another sentence speaks of it");
+}
+
+#[test]
+fn what_was_not_read_of_a_thing_is_not_there() {
+    let flat = &SAMPLES[FLAT];
+    let bed = Fact::Objects(ObjectsAsk { object: Subject::known("double_bed", "bed"), ..ObjectsAsk::default() });
+    let asked =
+        |prompt: &str, unread: &[&str]| fates(flat, &flat.world, worded(prompt, &[("bed", bed.clone())], unread));
+    assert_eq!(asked("a heated bed", &["heated"]), [Fate::Substituted]);
+    assert_eq!(asked("a heated house, a bed", &["heated"]), [Fate::Honored]);
+}
+
+#[test]
+fn a_room_that_nobody_knows_and_nothing_stands_in_is_only_its_name() {
+    let flat = &SAMPLES[FLAT];
+    let mut world = flat.world.clone();
+    let kitchen = world.scene_graph.rooms.iter_mut().find(|r| r.room_type == "kitchen").unwrap();
+    (kitchen.room_type, kitchen.name) = ("aviary".into(), "Aviary".into());
+    let id = kitchen.id.clone();
+    world.floorplan.rooms.iter_mut().find(|r| r.room_id == id).unwrap().room_type = "aviary".into();
+    let aviary = Fact::Rooms(RoomsAsk { room: Subject::unknown("aviary"), ..RoomsAsk::default() });
+    let asked = |world: &World| fates(flat, world, worded("an aviary", &[("aviary", aviary.clone())], &[]));
+    assert_eq!(asked(&world), [Fate::Honored], "with things on its floor it is a room");
+    world.placements.placements.retain(|p| p.room_id != id);
+    assert_eq!(asked(&world), [Fate::Substituted]);
+}
+
+#[test]
+fn each_of_several_rooms_has_what_they_are_asked_for_with() {
+    let flat = &SAMPLES[FLAT];
+    let is_wardrobe = |object: &str| object.ends_with("wardrobe");
+    let wardrobe =
+        Fact::Objects(ObjectsAsk { object: room("wardrobe"), room: Some(room("bedroom")), ..ObjectsAsk::default() });
+    let facts = [("two bedrooms", rooms("bedroom", AskedCount::exactly(2))), ("wardrobe", wardrobe)];
+    let asked = |world: &World| fates(flat, world, worded("two bedrooms with wardrobe", &facts, &[]))[1];
+    let mut world = flat.world.clone();
+    let bedrooms: Vec<String> =
+        world.scene_graph.rooms.iter().filter(|r| r.room_type == "bedroom").map(|r| r.id.clone()).collect();
+    let have = |world: &World, id: &String| {
+        world.placements.placements.iter().any(|p| &p.room_id == id && is_wardrobe(&p.object))
+    };
+    assert!(bedrooms.len() == 2 && bedrooms.iter().all(|id| have(&world, id)), "the sample has a wardrobe in each");
+    assert_eq!(asked(&world), Fate::Honored);
+    world.placements.placements.retain(|p| p.room_id != bedrooms[1] || !is_wardrobe(&p.object));
+    assert_eq!(asked(&world), Fate::Substituted, "one for two bedrooms");
+}
+
+#[test]
+fn people_are_counted_by_what_the_building_has_for_them() {
+    let flat = &SAMPLES[FLAT];
+    let mut world = flat.world.clone();
+    world.scene_graph.occupancy.residents = Some(2);
+    let two = Fact::People(PeopleAsk { role: "resident".into(), count: AskedCount::exactly(2) });
+    let brief = worded("for two", &[("two", two)], &[]);
+    let world = World { brief: Some(brief), ..world };
+    let found = &check(&world, flat.domain, &flat.retrieval).asks[0];
+    let seats = world.placements.placements.iter().filter(|p| p.object.contains("chair")).count() as f64;
+    assert_eq!(found.fate, Fate::Honored);
+    assert!(found.measured.unwrap() <= 4.0 && found.measured.unwrap() < seats, "beds of two bedrooms: {found:?}");
+}
+
+#[test]
+fn a_stand_for_a_thing_is_not_the_thing() {
+    let flat = &SAMPLES[FLAT];
+    let mut world = flat.world.clone();
+    assert!(world.placements.placements.iter().any(|p| p.object == "tv_stand"), "the flat has one");
+    let none =
+        Fact::Forbidden(ForbiddenAsk { object: Some(Subject::known("tv", "television")), ..ForbiddenAsk::default() });
+    let asked = |world: &World| fates(flat, world, worded("no television", &[("television", none.clone())], &[]))[0];
+    assert_eq!(asked(&world), Fate::LeftOut);
+    world.placements.placements.retain(|p| p.object != "tv");
+    assert_eq!(asked(&world), Fate::Honored);
+}
+
+#[test]
+fn a_conflict_about_another_thing_is_no_reason() {
+    let flat = &SAMPLES[FLAT];
+    let brief = worded("flat with a music room", &[("music room", named("music_room", "music room"))], &[]);
+    let mut world = World { brief: Some(brief), ..flat.world.clone() };
+    let note = |m: &str| d3dgen_model::scene_graph::Note::new("object_without_room", m.into());
+    world.scene_graph.conflicts = vec![note("no room was found for the object wood_stove; it was left out")];
+    let found = check(&world, flat.domain, &flat.retrieval).asks.remove(0);
+    assert_eq!(found.fate, Fate::LeftOut, "{found:?}");
+    assert!(!found.reason.contains("stove"), "{found:?}");
+}
+
+#[test]
+fn a_robot_rests_where_it_was_said_and_stays_out_where_it_was_said() {
+    let warehouse = &SAMPLES[WAREHOUSE];
+    let scenario = &warehouse.world.scenario;
+    let dock = scenario.robots.iter().find_map(|t| t.dock.clone()).unwrap();
+    let room_of = |id: &str| {
+        let poi = scenario.pois.iter().find(|p| p.poi_id == id).unwrap();
+        warehouse.world.scene_graph.room(&poi.room_id).unwrap().room_type.clone()
+    };
+    let goal = room_of(&scenario.robots[0].goals[0]);
+    let resting = |at: &str| AskedTask { verb: "wait".into(), to: vec![room(at)], ..AskedTask::default() };
+    let robots = |tasks: Vec<AskedTask>, keep_out: Vec<Subject>| {
+        Fact::Robots(RobotsAsk {
+            kind: "transport".into(),
+            count: AskedCount::exactly(2),
+            tasks,
+            keep_out,
+            ..RobotsAsk::default()
+        })
+    };
+    assert_eq!(answer(warehouse, robots(vec![resting(&room_of(&dock))], Vec::new())).fate, Fate::Honored);
+    assert_eq!(answer(warehouse, robots(vec![resting("break_room")], Vec::new())).fate, Fate::Substituted);
+    assert_eq!(
+        answer(warehouse, robots(Vec::new(), vec![room(&goal)])).fate,
+        Fate::LeftOut,
+        "it drives through {goal}"
+    );
 }

@@ -92,7 +92,7 @@ fn an_open_office_is_shared_out_to_storeys_of_one_size() {
         let desks: Vec<u32> = open.iter().filter_map(|r| r.occupants).collect();
         assert_eq!(desks.iter().sum::<u32>(), 90, "{desks:?}");
         assert_eq!(open.len(), 3, "one a storey");
-        assert!(graph.assumptions.iter().any(|n| n.code == "open_office_shared_out"));
+        assert!(graph.conflicts.iter().any(|n| n.code == "open_office_shared_out"));
         let sizes = storeys(&world);
         let [least, most] = [f64::min, f64::max].map(|f| sizes.iter().map(|s| s[1]).reduce(f).unwrap());
         assert!(most < 1.4 * least, "{sizes:?}");

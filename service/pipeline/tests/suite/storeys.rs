@@ -380,3 +380,21 @@ fn every_storey_stands_on_the_one_below_and_is_there_for_something() {
         assert!(storeys.iter().all(|n| *n > 0), "{prompt}: {storeys:?} rooms by storey");
     }
 }
+
+#[test]
+fn what_is_added_to_what_was_asked_for_is_told_as_a_change() {
+    let registry = Registry::builtin();
+    let codes = |prompt: &str| {
+        let graph = generate(&request(prompt, 3), &registry).unwrap();
+        graph.conflicts.iter().map(|n| n.code.clone()).collect::<Vec<_>>()
+    };
+    let upstairs = "two-storey house with two bedrooms upstairs, a study upstairs, a bathroom upstairs, two kids rooms upstairs; a kitchen downstairs";
+    let added = codes(upstairs);
+    assert!(added.contains(&"rooms_added".into()) && added.contains(&"ground_floor_filled".into()), "{added:?}");
+    let lift = codes("barrier-free house on two floors with three bedrooms");
+    assert!(lift.contains(&"elevator_added".into()), "{lift:?}");
+    let asked = codes("barrier-free house on two floors with three bedrooms and an elevator");
+    assert!(!asked.contains(&"elevator_added".into()), "{asked:?}");
+    let open = codes("office for 30 people: reception, boardroom for 12, server room, kitchenette and archive");
+    assert!(open.contains(&"main_room".into()), "{open:?}");
+}

@@ -1,7 +1,7 @@
 //! Rooms that are entered through others: which room is the host of each en suite, closet and terrace.
 
 use d3dgen_knowledge::jurisdiction::rules_here;
-use d3dgen_model::domain::{Access, AdjacencyRelation, Domain, Privacy, RoomType, Zone};
+use d3dgen_model::domain::{Access, AdjacencyRelation, Domain, RoomType, Zone};
 use d3dgen_model::offer;
 use d3dgen_model::offer::sleeps;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
@@ -153,21 +153,14 @@ pub(super) fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
                 format!("{} has no room to be entered from; it opens to the circulation instead", room.kind.label);
             reading.assumptions.push(Note::new("no_host", message));
         }
-        rooms[i].host = host.filter(|&h| hosted || leads_to(rooms[h].kind, rooms[i].kind));
+        rooms[i].host = host;
     }
 }
 
-/// Returns true where one may come to a room through another: nobody goes to the preparation through the operating room, which is
-/// private, but to a bathroom through the bedroom that it is given to.
-fn leads_to(outer: &RoomType, inner: &RoomType) -> bool {
-    outer.privacy != Privacy::Private || inner.wet || outer.access == Access::Host && outer.hosts.contains(&inner.id)
-}
-
-/// Returns true for a pair of rooms of which the second is private, so that the first is beside it and not behind it.
+/// Returns true for a pair of rooms of which the first cannot be entered through the second, so that it is beside it and not behind it.
 pub(super) fn is_beside(reading: &Reading, pair: &Pair) -> bool {
     let of = |id: &str| reading.domain.room_type_or_generic(id);
-    let (inner, outer) = (of(&pair.a), of(&pair.b));
-    pair.belongs && inner.access != Access::Host && !leads_to(outer, inner)
+    pair.belongs && of(&pair.a).access != Access::Host && !of(&pair.a).may_hang_on(of(&pair.b))
 }
 
 /// Returns the room that a lock of a pair is the way into: one more of the pair's that has none yet. Locks serve, and are the way

@@ -1,5 +1,7 @@
 //! Which rooms the building has: those the prompt names, completed from the program of its building type.
 
+use std::collections::BTreeSet;
+
 use d3dgen_knowledge::Applicable;
 use d3dgen_model::domain::{Access, RobotUse, RoomType, Zone};
 use d3dgen_model::offer::most_docks;
@@ -15,6 +17,8 @@ use crate::tokens::words::words;
 
 /// Toilets that a home of several storeys has where its list of rooms names fewer: one by day, one by night.
 const TOILETS_GRANTED: usize = 2;
+/// Kinds of rooms from which on the prompt lists rooms.
+const LEAST_LISTED: usize = 3;
 
 /// Returns the rooms of the building, circulation aside.
 pub(crate) fn complete<'a>(reading: &mut Reading<'a>) -> Vec<Planned<'a>> {
@@ -219,19 +223,31 @@ pub(crate) fn follow_rules<'a>(
     changed
 }
 
-/// States which rooms the prompt does not name.
+/// States which rooms the prompt does not name. Beside a list of rooms others are a change of what was asked for, but for the toilets
+/// that no list of rooms names.
 fn state_additions(reading: &mut Reading, rooms: &[Planned]) {
-    let mut added: Vec<(&str, u32)> = Vec::new();
-    for room in rooms.iter().filter(|r| !r.requested) {
-        match added.iter_mut().find(|a| a.0 == room.kind.label) {
+    let listed: BTreeSet<&str> = rooms.iter().filter(|r| r.requested).map(|r| r.room_type.as_str()).collect();
+    let is_change = |room: &&Planned| listed.len() >= LEAST_LISTED && !reading.wet.has_toilet(room.kind);
+    let added = rooms.iter().filter(|r| !r.requested);
+    let (changes, usual): (Vec<&Planned>, Vec<&Planned>) = added.partition(is_change);
+    let note = |rooms: &[&Planned]| {
+        let message = format!("rooms added from program {}: {}", reading.program.id, counted(rooms));
+        (!rooms.is_empty()).then(|| Note::new("rooms_added", message))
+    };
+    let (changed, assumed) = (note(&changes), note(&usual));
+    reading.conflicts.extend(changed);
+    reading.assumptions.extend(assumed);
+}
+
+/// Returns how many rooms of each kind there are, as people list them.
+fn counted(rooms: &[&Planned]) -> String {
+    let mut kinds: Vec<(&str, u32)> = Vec::new();
+    for room in rooms {
+        match kinds.iter_mut().find(|known| known.0 == room.kind.label) {
             Some(known) => known.1 += 1,
-            None => added.push((&room.kind.label, 1)),
+            None => kinds.push((&room.kind.label, 1)),
         }
     }
-    if added.is_empty() {
-        return;
-    }
-    let list: Vec<String> = added.iter().map(|(label, n)| format!("{n} {}", label.to_lowercase())).collect();
-    let message = format!("rooms added from program {}: {}", reading.program.id, list.join(", "));
-    reading.assumptions.push(Note::new("rooms_added", message));
+    let list: Vec<String> = kinds.iter().map(|(label, n)| format!("{n} {}", label.to_lowercase())).collect();
+    list.join(", ")
 }

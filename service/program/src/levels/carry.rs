@@ -104,7 +104,7 @@ pub(crate) fn fill<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planned<'a>>) 
         if !added.is_empty() {
             let which = if pair[0] == 0 { "the ground floor".into() } else { format!("level {}", pair[0]) };
             let message = format!("{which} would be smaller than the storey above; added {}", added.join(", "));
-            reading.assumptions.push(Note::new("ground_floor_filled", message));
+            reading.conflicts.push(Note::new("ground_floor_filled", message));
         }
     }
 }

@@ -504,6 +504,13 @@ fn corridor(reading: &Reading, i: usize, level: i32) -> GraphRoom {
     room
 }
 
+/// Returns what is said of an elevator that nobody asked for.
+fn added_elevator(reading: &Reading, room_type: &str, usual: bool) -> Option<Note> {
+    let why = if usual { "as buildings of so many storeys have one" } else { "for access without steps" };
+    let asked = reading.storeys.elevator.is_some() || reading.wishes.wishes.iter().any(|w| w.room_type == room_type);
+    (!asked).then(|| Note::new("elevator_added", format!("an elevator was added, {why}")))
+}
+
 /// Adds stairs, and an elevator where the building needs one, beside the corridor of every storey.
 fn links(
     reading: &mut Reading,
@@ -549,6 +556,8 @@ fn links(
         let lift = reading.storeys.elevator.unwrap_or(usual || reading.accessible);
         let asked = reading.storeys.lifts;
         if lift {
+            let added = added_elevator(reading, &elevator.room_type, usual);
+            reading.conflicts.extend(added);
             let planned = asked.clamp(1, LIFTS.len() as u32);
             wanted.extend(LIFTS[..planned as usize].iter().map(|id| (LinkKind::Elevator, &elevator.room_type, *id)));
             if asked > planned {

@@ -84,7 +84,7 @@ pub(crate) fn open_offices<'a>(reading: &mut Reading<'a>, rooms: &mut Vec<Planne
         rooms[first].kind.label.to_lowercase(),
         said.join(", ")
     );
-    reading.assumptions.push(Note::new("open_office_shared_out", message));
+    reading.conflicts.push(Note::new("open_office_shared_out", message));
 }
 
 fn is_open(domain: &Domain, room: &Planned) -> bool {

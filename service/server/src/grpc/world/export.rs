@@ -22,7 +22,7 @@ use crate::status::{self, invalid, reason};
 use crate::{jobs, names};
 
 /// Bytes of an archive of a batch at most: it lies in memory until it is taken.
-const LARGEST: usize = 1 << 30;
+const LARGEST: usize = 512 << 20;
 
 /// The models of the database, for the files of worlds.
 struct Kept<'a>(&'a Core);
