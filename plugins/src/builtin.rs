@@ -121,7 +121,7 @@ mod tests {
             let domain = builtin.domain();
             // stairwells and shafts hold nothing but what makes them so
             let vertical = |id: &str| domain.circulation.storeys.as_ref().is_some_and(|s| s.joins(id));
-            // a room that no domain knows has a name of its own and stays empty but for its light
+            // a room that no domain knows has a name of its own, a table and a cupboard
             let unknown = |id: &str| id == "room";
             for room in domain.room_types.iter().filter(|r| !vertical(&r.id) && !unknown(&r.id)) {
                 let mut objects = BTreeSet::new();

@@ -265,11 +265,12 @@ fn with_room(
     let lacks = |found: &Generated| scene_graph::short_rooms(domain, &found.world.scene_graph, &found.world.placements);
     let mut short = lacks(&best);
     let mut larger = graph.clone();
-    for _ in 0..grow::ROUNDS {
-        let next = grow::with_more_floor(&larger, &short).filter(|_| !pinned && !short.is_empty());
+    let few = Settings { attempts: grow::ATTEMPTS.min(settings.attempts), ..settings.clone() };
+    for round in 0..grow::ROUNDS {
+        let next = grow::with_more_floor(&larger, &short, round).filter(|_| !pinned && !short.is_empty());
         let Some(next) = next else { break };
         larger = next;
-        match made(&larger, settings) {
+        match made(&larger, &few) {
             Ok(found) => {
                 let less = lacks(&found);
                 let writable = found.report.is_writable() || !best.report.is_writable();

@@ -4,20 +4,24 @@ use d3dgen_model::scene_graph::{GraphRoom, Note, Robot, SceneGraph};
 
 use crate::scene_graph::Short;
 
-/// How often rooms grow before what is missing is said.
-pub(crate) const ROUNDS: usize = 4;
+/// How often rooms grow before what is missing is said: each round plans and furnishes the whole building again.
+pub(crate) const ROUNDS: usize = 2;
+/// How often plan and furniture are tried in a round, at most.
+pub(crate) const ATTEMPTS: u32 = 2;
 /// Least and most that a room grows at a time, as factors on its area.
 const LEAST: f64 = 1.08;
-const MOST: f64 = 1.5;
-/// Share of a room's floor that grows with its places: the way in and the stage do not.
-const FOR_PLACES: f64 = 0.6;
+const MOST: f64 = 2.0;
+/// Share of a room's floor that grows with its places, by round: the way in and the stage do not, but where that was too little
+/// the rows leave more over than they fill.
+const FOR_PLACES: [f64; ROUNDS] = [0.8, 1.1];
 /// Code of the note that names the rooms that grew.
 const GREW: &str = "rooms_grew";
 /// Most over least area up to which the prompt gives the area in figures: such a room stays.
 const TOLD: f64 = 1.3;
 
-/// Returns the graph with more floor in the rooms that are short of places; `None` where none of them may grow.
-pub(crate) fn with_more_floor(graph: &SceneGraph, short: &[Short]) -> Option<SceneGraph> {
+/// Returns the graph with more floor in the rooms that are short of places, as much as those that did not fit should take;
+/// `None` where none of them may grow. `round` counts from 0.
+pub(crate) fn with_more_floor(graph: &SceneGraph, short: &[Short], round: usize) -> Option<SceneGraph> {
     // whoever asks for a robot that the rooms are made for is told which one fits
     if graph.robots.iter().any(Robot::is_fitted) {
         return None;
@@ -28,7 +32,7 @@ pub(crate) fn with_more_floor(graph: &SceneGraph, short: &[Short]) -> Option<Sce
     for room in out.rooms.iter_mut().filter(open) {
         let Some(short) = short.iter().find(|s| s.room_id == room.id) else { continue };
         let ratio = f64::from(short.wanted) / f64::from(short.have.max(1));
-        let factor = (1.0 + FOR_PLACES * (ratio - 1.0)).clamp(LEAST, MOST);
+        let factor = (1.0 + FOR_PLACES[round] * (ratio - 1.0)).clamp(LEAST, MOST);
         let tenth = |area: f64| (10.0 * area).round() / 10.0;
         let [low, high] = room.area_range_m2;
         room.target_area_m2 = tenth(factor * room.target_area_m2);

@@ -22,6 +22,7 @@
 mod building;
 mod facts;
 mod grammar;
+mod likely;
 mod node;
 mod parse;
 mod pattern;

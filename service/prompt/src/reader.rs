@@ -1,6 +1,6 @@
 //! A prompt from its words to its brief.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -50,6 +50,8 @@ pub struct ReadPrompt {
     pub steps: Vec<Step>,
     /// The facts in short, one for each of the brief.
     pub facts: Vec<String>,
+    /// Names of rooms that no lexicon has and of which a part told the type of room, with that type.
+    pub told_by_a_part: BTreeMap<String, String>,
 }
 
 impl PromptReader {
@@ -78,6 +80,7 @@ impl PromptReader {
         };
         let building_type = building.first.as_ref().and_then(|b| b.building_type.as_deref());
         let known = Known::of(&self.registry, domain, building_type);
+        let told = Rc::clone(&known.told_by_a_part);
         let mut maker = Maker { reading: &reading, known, first_is_ground, facts: Vec::new() };
         nodes.iter().for_each(|n| {
             maker.add(n);
@@ -99,6 +102,7 @@ impl PromptReader {
             misspelled: misspelled(&reading),
             steps: steps(grammar, &applied, &reading),
             facts,
+            told_by_a_part: told.take(),
         }
     }
 }

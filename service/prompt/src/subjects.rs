@@ -1,6 +1,8 @@
 //! Rooms and objects that words name: which of their senses the building at hand knows.
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 use std::sync::LazyLock;
 
 use d3dgen_language::{Reading, fold};
@@ -10,6 +12,7 @@ use d3dgen_model::offer::furniture;
 use d3dgen_plugins::Registry;
 use serde::Deserialize;
 
+use crate::likely;
 use crate::node::Node;
 
 /// Id of the way into the building, as words have it.
@@ -42,6 +45,8 @@ pub(crate) struct Known<'d> {
     program: Option<&'d Program>,
     domain: Option<&'d Domain>,
     registry: Option<&'d Registry>,
+    /// Names of rooms of which only a part told the type, with that type.
+    pub told_by_a_part: Rc<RefCell<BTreeMap<String, String>>>,
 }
 
 impl<'d> Known<'d> {
@@ -56,6 +61,7 @@ impl<'d> Known<'d> {
             objects: plugin.domain().objects.iter().map(|o| o.id.clone()).collect(),
             domain: Some(plugin.domain()),
             registry: Some(registry),
+            ..Self::default()
         }
     }
 
@@ -135,7 +141,10 @@ impl<'d> Known<'d> {
         let name = span.map_or("", |s| reading.written(s)).to_owned();
         let strange = class == "room" && own.iter().any(|n| n.is_unknown());
         let id = id.filter(|id| !strange || self.rooms.is_empty() || self.rooms.contains(id));
-        Subject { id, name }
+        let told = || likely::room_called(&name, id.as_deref(), reading.languages(), |room| self.rooms.contains(room));
+        let Some(likely) = (class == "room").then(told).flatten() else { return Subject { id, name } };
+        self.told_by_a_part.borrow_mut().insert(name.clone(), likely.to_owned());
+        Subject::known(likely, &name)
     }
 
     /// Returns the object that places are: desks, beds.

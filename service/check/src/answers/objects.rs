@@ -120,7 +120,7 @@ impl<'a> Asked<'a> {
 /// and one more in the control room.
 fn of_all(asked: &ObjectsAsk, place: &Place, so: &[&Placement]) -> Finding {
     let in_room = |r: &&GraphRoom| so.iter().copied().filter(|p| p.room_id == r.id).collect::<Vec<_>>();
-    let of_rooms = || place.rooms.iter().map(|r| in_room(&r)).find(|own| asked.count.allows(own.len() as u32));
+    let of_rooms = || place.rooms.iter().map(in_room).find(|own| asked.count.allows(own.len() as u32));
     let counted = match asked.count.allows(so.len() as u32) || place.named {
         true => so.to_vec(),
         false => of_rooms().unwrap_or_else(|| so.to_vec()),

@@ -148,7 +148,9 @@ impl<'a> Asked<'a> {
                 !given.contains(w.id.as_str()) && self.doors_between(&room.id, |other| w.id == other).next().is_some()
             });
             match own {
-                Some(own) => drop(given.insert(&own.id)),
+                Some(own) => {
+                    given.insert(&own.id);
+                }
                 None => lacking.push(room),
             }
         }

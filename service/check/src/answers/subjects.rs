@@ -97,9 +97,9 @@ impl<'a> Asked<'a> {
     }
 
     fn is_at_window(&self, placement: &Placement) -> bool {
-        let windows = self.world.floorplan.windows.iter().filter(|w| w.room_id == placement.room_id);
+        let mut windows = self.world.floorplan.windows.iter().filter(|w| w.room_id == placement.room_id);
         let bounds = placement.footprint().bounds();
-        windows.into_iter().any(|w| w.line.bounds().distance(&bounds) <= AT_WINDOW_M + w.wall_thickness_m / 2.0)
+        windows.any(|w| w.line.bounds().distance(&bounds) <= AT_WINDOW_M + w.wall_thickness_m / 2.0)
     }
 
     /// Returns the passages from a room to those that `is_other` takes.

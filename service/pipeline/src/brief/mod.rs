@@ -4,12 +4,14 @@
 //! of the same brief where the older reader of `d3dgen-program` does not know the prompt's language, or where somebody wrote
 //! the brief; else of the words by that reader, unless the rooms of the brief keep more of what was asked for.
 
-use d3dgen_model::brief::Brief;
+use std::collections::BTreeMap;
+
+use d3dgen_model::brief::{Ask, Brief, Fact};
 use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
 use d3dgen_model::stage::Error;
 use d3dgen_plugins::Registry;
-use d3dgen_prompt::PromptReader;
+use d3dgen_prompt::{PromptReader, ReadPrompt};
 
 mod kept;
 
@@ -29,7 +31,11 @@ const NO_BUILDING: [&str; 2] = ["default_domain", "domain_from_rooms"];
 
 /// Reads a prompt; none where there are no words.
 pub fn of_prompt(prompt: &str, registry: &Registry) -> Option<Brief> {
-    (!prompt.trim().is_empty()).then(|| PromptReader::new(registry).read(prompt).brief)
+    read(prompt, registry).map(|read| read.brief)
+}
+
+fn read(prompt: &str, registry: &Registry) -> Option<ReadPrompt> {
+    (!prompt.trim().is_empty()).then(|| PromptReader::new(registry).read(prompt))
 }
 
 /// Reads the prompt of a building that is planned; none for a plan that somebody brought, which has the name of its file there.
@@ -45,21 +51,40 @@ pub fn rooms(request: &Request, registry: &Registry) -> Result<(SceneGraph, Opti
     if let Some(brief) = &request.brief {
         return Ok((rooms_of(brief, request, registry)?, Some(brief.clone())));
     }
-    let Some(brief) = of_prompt(&request.prompt, registry) else {
+    let Some(ReadPrompt { brief, told_by_a_part, .. }) = read(&request.prompt, registry) else {
         return Ok((scene_graph::generate(request, registry)?, None));
     };
+    let mut graph = rooms_of_prompt(&brief, request, registry)?;
+    graph.assumptions.extend(likely_rooms(&brief, &told_by_a_part, &graph));
+    Ok((graph, Some(brief)))
+}
+
+/// Makes the rooms of a prompt that was read into a brief.
+fn rooms_of_prompt(brief: &Brief, request: &Request, registry: &Registry) -> Result<SceneGraph, Error> {
     let of_words = brief.languages.first().is_none_or(|l| scene_graph::reads(l));
     let free = request.domain.is_none();
-    if !of_words || free && says_nothing(&brief) {
-        return Ok((rooms_of(&brief, request, registry)?, Some(brief)));
+    if !of_words || free && says_nothing(brief) {
+        return rooms_of(brief, request, registry);
     }
-    let graph = scene_graph::generate_with(&brief, request, registry)?;
-    let graph = in_its_kind(&brief, graph, request, registry)?;
+    let graph = scene_graph::generate_with(brief, request, registry)?;
+    let graph = in_its_kind(brief, graph, request, registry)?;
     let unnamed = graph.assumptions.iter().any(|n| NO_BUILDING.contains(&n.code.as_str()));
     // a kind of building that no domain knows is no home by its rooms
     let unknown = free && unnamed && brief.building.as_ref().is_some_and(|b| b.domain.is_none());
-    let graph = if unknown { rooms_of(&brief, request, registry)? } else { fuller(&brief, graph, request, registry) };
-    Ok((graph, Some(brief)))
+    if unknown { rooms_of(brief, request, registry) } else { Ok(fuller(brief, graph, request, registry)) }
+}
+
+/// Says of rooms whose names no lexicon has as what they were furnished, by a part of their names.
+fn likely_rooms(brief: &Brief, told: &BTreeMap<String, String>, graph: &SceneGraph) -> Option<Note> {
+    let asked = |(name, id): &(&String, &String)| {
+        let same =
+            |a: &Ask| matches!(&a.fact, Fact::Rooms(r) if &r.room.name == *name && r.room.id.as_ref() == Some(*id));
+        brief.asks.iter().any(same) && graph.rooms.iter().any(|r| &r.room_type == *id)
+    };
+    let all: Vec<String> =
+        told.iter().filter(asked).map(|(name, id)| format!("`{name}` ({})", id.replace('_', " "))).collect();
+    let message = format!("no room is known by these names; furnished by a part of them: {}", all.join(", "));
+    (!all.is_empty()).then(|| Note::new("room_likely", message))
 }
 
 /// Returns the rooms of a prompt in the kind of building that its words name, where one odd room had moved them to another: a house

@@ -33,7 +33,7 @@ const CALLED: [(&str, &str, usize); 5] = [
 ];
 
 /// Prompts of kinds with a room and an object by which one knows them without its label.
-const KNOWN_BY: [(&str, &str, &str); 14] = [
+const KNOWN_BY: [(&str, &str, &str); 29] = [
     ("prison with 12 cells", "guard_post", "control_console"),
     ("Gefängnis mit 8 Zellen", "prison_cell", "combination_wc"),
     ("indoor swimming pool", "pool_hall", "lifeguard_chair"),
@@ -48,6 +48,21 @@ const KNOWN_BY: [(&str, &str, &str); 14] = [
     ("field hospital with 20 beds", "field_ward", "camp_bed"),
     ("theatre with 150 seats", "theatre_hall", "theatre_stage"),
     ("milking parlour in a dairy barn", "milking_parlour", "milking_stand"),
+    ("print shop with a reception", "print_hall", "printing_press"),
+    ("Steinmetzbetrieb mit Büro", "stone_hall", "bridge_saw"),
+    ("déchetterie avec un bureau", "collection_hall", "skip_container"),
+    ("autoescuela con dos aulas", "simulator_room", "driving_simulator"),
+    ("schronisko dla zwierząt", "kennel_hall", "dog_run"),
+    ("гончарная мастерская с магазином", "throwing_room", "pottery_wheel"),
+    ("cantina vinicola con negozio", "barrel_cellar", "barrel_rack"),
+    ("柔道場と更衣室", "mat_hall", "mat_field"),
+    ("jeugdhuis met een keuken", "youth_room", "sofa"),
+    ("ateliê de costura com provador", "sewing_workshop", "sewing_table"),
+    ("密室逃脱馆", "puzzle_room", "safe"),
+    ("푸드뱅크", "food_hand_out", "shop_counter"),
+    ("marina office with showers", "reception", "small_reception_desk"),
+    ("tattoo studio with three cabins", "tattoo_cabin", "massage_table"),
+    ("bookshop with a reading corner for children", "book_shop", "double_bookshelf"),
 ];
 
 #[test]
@@ -96,7 +111,7 @@ fn rooms_grow_until_everybody_has_a_seat() {
 const BORROWED: [(&str, &str, &str); 3] = [
     ("office for 12 people with a courtroom and a sauna", "courtroom", "church_pew"),
     ("primary school with four classrooms, a waiting area and an x-ray room", "xray_room", "bucky_stand"),
-    ("Drukarnia z halą maszyn, magazynem papieru, biurem dla 8 osób i szatnią", "machine_hall", "panel_saw"),
+    ("Büro für 8 Personen mit Maschinenhalle, Besprechungsraum und Lager", "machine_hall", "panel_saw"),
 ];
 
 #[test]
@@ -106,6 +121,61 @@ fn a_room_of_another_kind_of_building_is_furnished_as_there() {
             assert!(count(&world, room_type, object) > 0, "{prompt}: {:?}", world.scene_graph.assumptions);
             let said = world.scene_graph.assumptions.iter().any(|note| note.code == "room_borrowed");
             assert!(said, "{prompt} does not say where the room is from");
+        }
+    }
+}
+
+/// Rooms by names that no lexicon has, with what they are and an object that such a room has.
+const TOLD_BY_A_PART: [(&str, &str, &str); 8] = [
+    ("crematorium with a bouquet room and a chapel", "flower_workroom", "flower_buckets"),
+    ("community centre with a luthier's room and an office", "workshop", "workbench"),
+    ("sports club with a sumo hall and changing rooms", "mat_hall", "mat_field"),
+    ("Gemeindehaus mit Saal, Küche und Textilraum", "sewing_workshop", "sewing_table"),
+    ("centre culturel avec une salle de sérigraphie et un bureau", "print_hall", "printing_press"),
+    ("carnicería con sala de despiece y vestuario", "butchery", "prep_table"),
+    ("dom kultury z salą taneczną i biblioteką", "fitness_studio", "wall_mirror"),
+    ("公民館 多目的ホール、陶芸室、事務室", "throwing_room", "pottery_wheel"),
+];
+
+#[test]
+fn a_room_that_no_lexicon_has_is_furnished_by_a_part_of_its_name() {
+    for (prompt, room_type, object) in TOLD_BY_A_PART {
+        for world in worlds(prompt, 1) {
+            assert!(count(&world, room_type, object) > 0, "{prompt}: {:?}", world.scene_graph.rooms);
+            let said = world.scene_graph.assumptions.iter().any(|note| note.code == "room_likely");
+            assert!(said, "{prompt} does not say as what the room was furnished");
+        }
+    }
+}
+
+#[test]
+fn a_room_that_tells_nothing_has_a_table_chairs_and_cupboards() {
+    for prompt in [
+        "museum with a lobby, two exhibition rooms and a flumbarium",
+        "office with a flumbarium, two offices and a lobby",
+    ] {
+        for world in worlds(prompt, SEEDS) {
+            let room = world.floorplan.rooms.iter().find(|r| r.room_type == "flumbarium").expect("it is asked for");
+            assert!(in_room(&world, &room.room_id).count() >= 5, "{prompt}: the room is bare");
+            assert!(world.scene_graph.assumptions.iter().any(|note| note.code == "unknown_room"), "{prompt}");
+        }
+    }
+}
+
+/// Lists of rooms that leave out what the kind is there for, which joins them.
+const WITHOUT_THE_HEART: [(&str, &str); 5] = [
+    ("bookshop with a till, a store and a staff toilet", "book_shop"),
+    ("kindergarten with a kitchen, a staff room and a pram store", "group_room"),
+    ("Infusionszentrum mit Labor und Personalraum", "infusion_bay"),
+    ("coworking space with two meeting rooms and a cafe", "open_office"),
+    ("dance studio with a reception and showers", "fitness_studio"),
+];
+
+#[test]
+fn a_list_without_the_heart_of_its_kind_gets_it() {
+    for (prompt, room_type) in WITHOUT_THE_HEART {
+        for world in worlds(prompt, 1) {
+            assert!(rooms(&world, room_type).count() > 0, "{prompt}: {:?}", world.scene_graph.rooms);
         }
     }
 }

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use d3dgen_model::brief::{Ask, Bound, Brief, CapacityAsk, Fact, PlaceKind, RoomsAsk, SiteKind};
-use d3dgen_model::domain::GENERIC_ROOM_TYPE;
+use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
 use d3dgen_model::offer::{self, has_counters};
 use d3dgen_model::scene_graph::Note;
 use d3dgen_plugins::Registry;
@@ -171,18 +171,38 @@ fn restore_rooms(reading: &mut Reading, brief: &Brief, registry: &Registry) {
     }
 }
 
-/// Gives rooms of which the reader of words knew no more than their name the type that the brief knows them by.
+/// Gives rooms of which the reader of words knew no more than their name, or only the end of it, the type that the brief knows
+/// them by: a "committal hall" is no hall like another.
 fn retype(reading: &mut Reading, brief: &Brief, ask: &Ask, asked: &RoomsAsk) {
     let domain = reading.domain;
     let known =
         asked.room.id.as_ref().filter(|id| domain.room_type_or_lent(id).is_some_and(|k| k.id != GENERIC_ROOM_TYPE));
     let Some((id, bytes)) = known.zip(bytes_of(brief, ask, &asked.room.name)) else { return };
     let here = |u: &&Understood| u.bytes.start < bytes.end && bytes.start < u.bytes.end;
-    let unknown = |id: &&String| domain.room_type_or_lent(id).is_none();
-    let mut types = reading.understood.iter().filter(here).filter_map(|u| u.room_type.as_ref());
-    let Some(named) = types.find(unknown).cloned() else { return };
+    // neither type is called so: the reader of words knew the end of the name, the brief another part of it
+    let name = asked.room.name.to_lowercase();
+    let name = name.trim_end_matches('s');
+    let end_only = |read: &str| {
+        words_for(domain, read).all(|word| word != name) && words_for(domain, id).all(|word| !name.ends_with(word))
+    };
+    let less = |u: &&Understood| match &u.room_type {
+        Some(read) if domain.room_type_or_lent(read).is_none() => read != id,
+        Some(read) => read != id && u.bytes.end == bytes.end && end_only(read),
+        None => false,
+    };
+    let Some(named) = reading.understood.iter().filter(here).find(less).and_then(|u| u.room_type.clone()) else {
+        return;
+    };
     let Some(at) = reading.wishes.wishes.iter().position(|w| w.room_type == named) else { return };
-    let mut wish = reading.wishes.wishes.remove(at);
+    let mut wish = reading.wishes.wishes[at].clone();
+    // "a hall and a committal hall": one of the two
+    let rest = wish.count.saturating_sub(asked.count.n);
+    if rest > 0 {
+        wish.count -= rest;
+        reading.wishes.wishes[at].count = rest;
+    } else {
+        reading.wishes.wishes.remove(at);
+    }
     match reading.wishes.wishes.iter_mut().find(|w| &w.room_type == id) {
         Some(same) => same.count += wish.count,
         None => {
@@ -198,6 +218,13 @@ fn retype(reading: &mut Reading, brief: &Brief, ask: &Ask, asked: &RoomsAsk) {
     });
     let name = capital(&asked.room.name);
     reading.names.push(Called { span: Span { start: 0, end: 0 }, room_type: id.clone(), name, count: asked.count.n });
+}
+
+/// Returns the words of a domain for a type of room, in the singular.
+fn words_for<'d>(domain: &'d Domain, id: &str) -> impl Iterator<Item = &'d str> {
+    let kind = domain.room_type_or_lent(id).into_iter();
+    let words = kind.flat_map(|kind| kind.keywords.values().chain(kind.called.values()).flatten());
+    words.map(|word| word.trim_end_matches('s'))
 }
 
 /// Adds how rooms that were `added` lie to others.

@@ -115,8 +115,9 @@ fn state_unknown(reading: &mut Reading, planned: &[Planned]) {
         }
         stated.push(&room.room_type);
         let words = room.name.clone().unwrap_or_else(|| room.room_type.replace('_', " "));
-        let message =
-            format!("`{words}` is no room that is known; it has its name and its light, and is empty for the rest");
+        let message = format!(
+            "`{words}` is no room that is known; it has its name, and a table, chairs and cupboards for the rest"
+        );
         reading.assumptions.push(Note::new("unknown_room", message));
     }
 }
