@@ -152,6 +152,7 @@ fn graph(robot: &Robot) -> SceneGraph {
         occupants: None,
         circulation: false,
         unit: None,
+        garden_door: false,
         level: 0,
         requested: true,
         entrance: id == "a_1",

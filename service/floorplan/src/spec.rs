@@ -300,6 +300,11 @@ impl Brief {
         if let Some(building) = domain.building_types.iter().find(|b| graph.building_type.as_ref() == Some(&b.id)) {
             brief.stand(building);
         }
+        let asked = |(i, room): (usize, &GraphRoom)| (room.garden_door && !brief.upper).then_some(i);
+        let asked: Vec<usize> = graph.rooms.iter().enumerate().filter_map(asked).collect();
+        if !asked.is_empty() {
+            brief.garden = asked;
+        }
         if let Some(spine) = brief.spine
             && !brief.upper
             && !brief.rooms.iter().any(|r| r.entrance)

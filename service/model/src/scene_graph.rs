@@ -154,6 +154,9 @@ pub struct GraphRoom {
     /// Unit of a large building that it belongs to (`ward_2`), whose rooms lie together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
+    /// True when it is to have the door to the garden; of several such rooms one gets it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub garden_door: bool,
 }
 
 /// A relation between two rooms.

@@ -120,6 +120,7 @@ impl<'s> Site<'s> {
             entrance: false,
             locked: false,
             unit: None,
+            garden_door: false,
             level: 0,
         };
         let graph = SceneGraph {

@@ -424,6 +424,7 @@ pub fn of_plan(plan: &Floorplan, brought: &Brought, registry: &Registry) -> Resu
                 locked: true,
                 level: room.level,
                 unit: None,
+                garden_door: false,
             }
         })
         .collect();

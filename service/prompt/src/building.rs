@@ -8,7 +8,7 @@ use d3dgen_model::brief::{AskedBuilding, AskedPlace, PromptWords};
 use d3dgen_plugins::Registry;
 
 use crate::node::Node;
-use crate::places::parts;
+use crate::places::{is_name, parts};
 
 /// How sure a kind is that is named where a building is named.
 const NAMED: f64 = 1.0;
@@ -207,6 +207,10 @@ pub(crate) fn place(nodes: &[Rc<Node>], reading: &Reading) -> (Option<AskedPlace
         let latin = node.text.chars().any(|c| c.is_ascii_alphabetic());
         // "Nice", "Reading", and words that are something else as well
         if (parts.strict || other) && latin && !(led && node.capital) {
+            continue;
+        }
+        // "malto" is no form of Malta
+        if latin && !led && !node.capital && !is_name(&node.text) {
             continue;
         }
         let Some(country) = parts.country else { continue };

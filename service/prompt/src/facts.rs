@@ -1,17 +1,19 @@
 //! Facts of a brief, made of what the rules found.
 
+mod robots;
+mod rooms;
+mod values;
+
 use std::ops::Range;
 use std::rc::Rc;
 
 use d3dgen_language::Reading;
 use d3dgen_model::brief::{
-    AccessAsk, AreaAsk, AskedCount, AskedTask, Bound, CapacityAsk, Fact, ForbiddenAsk, ObjectsAsk, OnlyAsk, OtherAsk,
-    PeopleAsk, PlaceKind, RelationAsk, RelationKind, RobotsAsk, RoomsAsk, SiteAsk, SiteKind, StoreysAsk, StyleAsk,
-    Subject,
+    AccessAsk, AreaAsk, AskedCount, CapacityAsk, Fact, ForbiddenAsk, ObjectsAsk, OnlyAsk, OtherAsk, PeopleAsk,
+    PlaceKind, RelationAsk, RelationKind, RoomsAsk, SiteAsk, SiteKind, StoreysAsk, StyleAsk, Subject,
 };
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 
+use self::values::{attributes, bound, count, household, measure, number, place_kind, relation_kind, several};
 use crate::node::Node;
 use crate::subjects::Known;
 
@@ -108,6 +110,7 @@ impl Maker<'_> {
             Some("each_group") => self.each_group(node),
             Some("each_person") => self.each_person(node),
             Some("every_room") => self.every_room(node),
+            Some("some_room") => self.some_room(node),
             Some("fleet") => self.fleet(node),
             Some("shorthand_home") => self.shorthand(node),
             Some("style") => self.style(node),
@@ -150,8 +153,14 @@ impl Maker<'_> {
     /// States a storey that nothing is said to lie on.
     fn storey_alone(&mut self, node: &Node) {
         let storey = self.storeys_named(node).first().copied();
-        let wish = self.reading.written(node.tokens.clone()).to_owned();
-        self.facts.push(Stated { storey, ..Stated::new(node, Fact::Other(OtherAsk { wish })) });
+        let wish = || Fact::Other(OtherAsk { wish: self.reading.written(node.tokens.clone()).to_owned() });
+        let so_high =
+            |level: i32| StoreysAsk { count: AskedCount::at_least(1 + level.max(0) as u32), basement: level < 0 };
+        let fact = match storey {
+            Some(Storey::At(level)) => Fact::Storeys(so_high(level)),
+            _ => wish(),
+        };
+        self.facts.push(Stated { storey, ..Stated::new(node, fact) });
     }
 
     /// States the rooms and things of work that no robot is found for.
@@ -190,231 +199,6 @@ impl Maker<'_> {
 
     fn subject(&self, node: &Node) -> Subject {
         self.known.any(node, self.reading)
-    }
-
-    fn rooms(&mut self, node: &Node, around: Around) {
-        for suite in node.all("suite") {
-            let ids = suite.values("suite").next().unwrap_or_default().to_owned();
-            for id in ids.split('+') {
-                let room = Subject::known(id, self.reading.written(suite.tokens.clone()));
-                let count = count(node).unwrap_or_default();
-                self.say(node, Fact::Rooms(RoomsAsk { room, count, level: around.level(), ..RoomsAsk::default() }));
-            }
-        }
-        if node.field("suite").is_some() {
-            return;
-        }
-        if self.reads_otherwise(node) {
-            return;
-        }
-        let mut room = self.known.subject(node, "room", self.reading);
-        if let Some(kind) = node.field("kind") {
-            room.id = self.known.main_room(kind);
-        }
-        let asked = count(node);
-        let count = asked.or_else(|| several(node, &["room", "own"])).unwrap_or_default();
-        // "1.5 baths": one bathroom, and half of one
-        let half = half(node).and_then(|n| Some((n, room.id.as_deref().and_then(|id| self.known.half_of(id))?)));
-        let count = half.as_ref().map_or(count, |(n, _)| AskedCount { n: *n, ..count });
-        if let Some((n, id)) = half {
-            let room = Subject::known(&id, &room.name);
-            self.say(node, Fact::Rooms(RoomsAsk { room, count: AskedCount::exactly(1), ..RoomsAsk::default() }));
-            if n == 0 {
-                return;
-            }
-        }
-        let several = count.n > 1;
-        let mut ask = RoomsAsk {
-            room: room.clone(),
-            count,
-            area_m2: node.field("area").and_then(|a| measure(a, "area")),
-            sides_m: sides(node),
-            level: around.level(),
-            attributes: attributes(node),
-            ..RoomsAsk::default()
-        };
-        let some = node.field("some").and_then(|n| number(n));
-        let with = if some.is_none() { node.all("with").cloned().collect() } else { Vec::new() };
-        let (mut each, inside): (Vec<Rc<Node>>, Vec<Rc<Node>>) =
-            with.into_iter().partition(|n| several && n.is("rooms", Some("bare")));
-        each.extend(node.all("with_each").filter(|n| self::count(n).is_none_or(|c| c.n == 1)).cloned());
-        ask.each = each.first().map(|n| self.subject(n));
-        // "a bedroom for each of the four children"
-        if let Some(all) = node.field("each_of").and_then(|people| self::count(people)) {
-            ask.count = all;
-        }
-        let whose =
-            node.all("own").filter(|o| !o.is_unknown() && (o.is("person", None) || o.is("attribute", None))).count();
-        if whose > 1 && asked.is_none() && node.field("room").is_some() {
-            ask.count = AskedCount::at_least(whose as u32);
-        }
-        if let Some(sex) = node.field("sex") {
-            ask.count = by_sex(sex, asked, ask.count);
-        }
-        let own = node.field("own").is_some();
-        self.facts.push(Stated { mention: around.mention, own, ..Stated::new(node, Fact::Rooms(ask)) });
-        self.some_of(node, &room, count);
-        if room.id.is_none() {
-            self.named_for(node, &room);
-        }
-        each.iter().skip(1).for_each(|more| self.one_each(more, &room, count));
-        for held in node.all("hold") {
-            self.held(held, &room, several);
-        }
-        for inner in &inside {
-            self.inside(inner, &room, several);
-        }
-        node.all("other").for_each(|n| {
-            self.state(n, Around::default());
-        });
-    }
-
-    /// States what a room that no lexicon has is named for: the machine of a "washing machine room".
-    fn named_for(&mut self, node: &Node, room: &Subject) {
-        for own in node.all("own") {
-            let Some(id) = own.values("object").find(|id| self.known.objects.contains(*id)) else { continue };
-            let object = Subject::known(id, self.reading.written(own.tokens.clone()));
-            let asked = ObjectsAsk { object, room: Some(room.clone()), ..ObjectsAsk::default() };
-            self.say(own, Fact::Objects(asked));
-        }
-    }
-
-    /// States what is said of some of several rooms: their places, what they are like, a room that they come with.
-    fn some_of(&mut self, node: &Node, room: &Subject, count: AskedCount) {
-        let one = AskedCount::exactly(1);
-        let some = node.field("some").map(|n| number(n).unwrap_or(one));
-        for held in node.all("some_hold") {
-            self.held_by(held, room, some.unwrap_or(one).n);
-        }
-        // "180, 110 and 64 seats": what is counted stands behind the last one
-        let of = node.all("one_hold").last().and_then(|n| places_of(n)).unwrap_or_default();
-        for held in node.all("one_hold") {
-            self.held_by(held, room, 1);
-            if let Some(Stated { fact: Fact::Capacity(capacity), .. }) = self.facts.last_mut() {
-                capacity.of = of;
-            }
-        }
-        if let (Some(count), Some(with)) = (some, node.field("with").cloned()) {
-            self.one_each(&with, room, count);
-        }
-        for with in
-            node.all("with_each").filter(|n| self::count(n).is_some_and(|c| c.n > 1)).cloned().collect::<Vec<_>>()
-        {
-            let each = self::count(&with).unwrap_or(one);
-            self.one_each(&with, room, AskedCount { n: each.n.saturating_mul(count.n), ..count });
-        }
-        self.alike(node, room);
-    }
-
-    /// States what some of several rooms are like: "20 rooms, 2 of them accessible".
-    fn alike(&mut self, node: &Node, room: &Subject) {
-        let attributes: Vec<String> = node.all("like").map(|n| self.word_of(n)).collect();
-        if attributes.is_empty() {
-            return;
-        }
-        let count = node.field("some").and_then(|n| number(n)).unwrap_or(AskedCount::exactly(1));
-        let ask = RoomsAsk { room: room.clone(), count, attributes, among: true, ..RoomsAsk::default() };
-        self.say(node, Fact::Rooms(ask));
-    }
-
-    /// Returns the attribute that a word stands for, or the word itself.
-    fn word_of(&self, node: &Node) -> String {
-        let own = || self.reading.written(node.tokens.clone()).to_lowercase().replace(' ', "_");
-        node.values("attribute").next().map_or_else(own, str::to_owned)
-    }
-
-    /// States the places of so many of several rooms.
-    fn held_by(&mut self, held: &Node, room: &Subject, rooms: u32) {
-        self.held(held, room, rooms > 1);
-        if let Some(Stated { fact: Fact::Capacity(capacity), .. }) = self.facts.last_mut() {
-            capacity.of_rooms = Some(rooms);
-        }
-    }
-
-    /// States one more room that comes with each of others.
-    fn one_each(&mut self, guest: &Rc<Node>, host: &Subject, count: AskedCount) {
-        let room = self.subject(guest);
-        self.say(guest, Fact::Rooms(RoomsAsk { room: room.clone(), count, ..RoomsAsk::default() }));
-        self.say(guest, Fact::Relation(RelationAsk { a: room, relation: RelationKind::Door, b: host.clone() }));
-    }
-
-    /// States a room for each of so many people.
-    fn each_person(&mut self, node: &Node) {
-        let people: Vec<Rc<Node>> = node.all("people").cloned().collect();
-        let all = people.iter().find_map(|p| count(p));
-        for part in people.iter().chain(node.all("item")) {
-            let from = self.facts.len();
-            self.state(part, Around::default());
-            for stated in &mut self.facts[from..] {
-                if let (Fact::Rooms(rooms), Some(all)) = (&mut stated.fact, all) {
-                    rooms.count = all;
-                }
-            }
-        }
-    }
-
-    /// States what every room has: each of the several that were named last.
-    fn every_room(&mut self, node: &Node) {
-        let several = |f: &Stated| matches!(&f.fact, Fact::Rooms(r) if r.count.n > 1);
-        let Some(at) = self.facts.iter().rposition(several) else { return self.other(node) };
-        let mut with: Vec<Rc<Node>> = node.all("with").cloned().collect();
-        let own = with.first().map(|n| self.subject(n));
-        let stated = &mut self.facts[at];
-        let Fact::Rooms(hosts) = &mut stated.fact else { return };
-        let (host, count) = (hosts.room.clone(), hosts.count);
-        if hosts.each.is_none() {
-            hosts.each = own;
-            stated.also = Some(node.tokens.clone());
-            with.remove(0);
-        }
-        with.iter().for_each(|more| self.one_each(more, &host, count));
-    }
-
-    /// States what a word is that names a room of other buildings, and an object or a manner of this one: "open plan" in a home.
-    fn reads_otherwise(&mut self, node: &Node) -> bool {
-        let Some(leaf) = node.field("room").cloned() else { return false };
-        if self.known.rooms.is_empty() || leaf.values("room").any(|v| self.known.rooms.contains(v)) {
-            return false;
-        }
-        if let Some(word) = leaf.values("attribute").next() {
-            self.say(node, Fact::Style(StyleAsk { word: word.to_owned() }));
-            return true;
-        }
-        let Some(id) = leaf.values("object").find(|v| self.known.objects.contains(*v)) else { return false };
-        let object = Subject::known(id, self.reading.written(leaf.tokens.clone()));
-        let count = count(node).unwrap_or_default();
-        self.say(
-            node,
-            Fact::Objects(ObjectsAsk { object, count, attributes: attributes(node), ..ObjectsAsk::default() }),
-        );
-        true
-    }
-
-    /// States what a room has in it or beside it: "bedroom with a desk", "pharmacy with a clean room".
-    fn inside(&mut self, inner: &Rc<Node>, room: &Subject, several: bool) {
-        match inner.made() {
-            Some("rooms") => {
-                self.state(inner, Around::default());
-                let relation = RelationAsk { a: self.subject(inner), relation: RelationKind::Door, b: room.clone() };
-                self.say(inner, Fact::Relation(relation));
-            }
-            Some("objects") => {
-                self.state(inner, Around::default());
-                if let Some(Stated { fact: Fact::Objects(objects), .. }) = self.facts.last_mut() {
-                    objects.room = Some(room.clone());
-                    objects.each_room = several;
-                }
-            }
-            _ => self.held(inner, room, several),
-        }
-    }
-
-    /// States the places of a room: "4 screens of 80 seats", "meeting room for ten".
-    fn held(&mut self, held: &Node, room: &Subject, several: bool) {
-        let count = count(held).or_else(|| number(held)).or_else(|| household(held)).unwrap_or_default();
-        let of = places_of(held).unwrap_or_default();
-        let fact = CapacityAsk { of, count, room: Some(room.clone()), each_room: several, ..CapacityAsk::default() };
-        self.say(held, Fact::Capacity(fact));
     }
 
     fn objects(&mut self, node: &Node) {
@@ -550,89 +334,6 @@ impl Maker<'_> {
         self.say(node, Fact::People(PeopleAsk { role, count }));
     }
 
-    /// States robots of several kinds: "2 cleaning and 3 delivery robots".
-    fn fleet(&mut self, node: &Node) {
-        let mut n = None;
-        for (name, part) in &node.fields {
-            match &**name {
-                "n" => n = number(part),
-                "kind" => {
-                    let named = part.values("robot").next().or_else(|| part.values("task").next().map(kind_of_work));
-                    let (kind, count) = (named.unwrap_or("service").to_owned(), n.take().unwrap_or_default());
-                    self.say(node, Fact::Robots(RobotsAsk { kind, count, ..RobotsAsk::default() }));
-                }
-                _ => {}
-            }
-        }
-    }
-
-    fn robots(&mut self, node: &Node) {
-        let kinds = node.all("robot").flat_map(|r| {
-            r.values("robot").chain(r.values("task").map(kind_of_work)).map(str::to_owned).collect::<Vec<_>>()
-        });
-        let mut kinds: Vec<String> = kinds.collect();
-        kinds.sort_by_key(|k| k == "any");
-        let mut tasks: Vec<AskedTask> = node.all("does").filter_map(|d| self.task(d)).collect();
-        if let Some(verb) = tasks.last().map(|t| t.verb.clone()) {
-            tasks.extend(node.all("more").map(|d| self.task_of(&verb, d)));
-        }
-        if let Some(verb) = node.field("work_at").and_then(|_| kinds.first()).and_then(|k| work_of(k)) {
-            let to = node.all("work_at").map(|n| self.subject(n)).collect();
-            tasks.push(AskedTask { verb: verb.to_owned(), to, ..AskedTask::default() });
-        }
-        let verb = tasks.first().map(|t| t.verb.clone());
-        let mut kind = kinds.into_iter().next().unwrap_or_else(|| "any".to_owned());
-        if kind == "any" {
-            // a robot is what it does
-            kind = verb.map_or_else(|| "service".to_owned(), |v| kind_of_work(&v).to_owned());
-        }
-        let side = |which: &str| {
-            node.all("size")
-                .find(|s| s.field("which").is_some_and(|w| w.is("dimension", Some(which))))
-                .and_then(|s| measure(s, "length"))
-        };
-        let bare = node.all("size").find(|s| s.field("which").is_none()).and_then(|s| measure(s, "length"));
-        let round = side("diameter").or(side("radius").map(|r| 2.0 * r));
-        let sides = sides(node);
-        // "a robot vacuums the hall": a verb, no plural
-        let several = || several(node, &["robot"]).filter(|_| node.field("work_at").is_none());
-        let asked = count(node).or_else(several).unwrap_or_default();
-        let keep_out =
-            node.all("keep_out").flat_map(|k| k.all("item").map(|n| self.subject(n)).collect::<Vec<_>>()).collect();
-        self.say(
-            node,
-            Fact::Robots(RobotsAsk {
-                kind,
-                count: asked,
-                width_m: side("width").or(round).or(sides.map(|s| s[0])).or(bare),
-                length_m: side("length").or(round).or(sides.map(|s| s[1])),
-                height_m: side("height"),
-                tasks,
-                keep_out,
-            }),
-        );
-        let works = node.all("does").chain(node.all("more"));
-        let ends = works
-            .flat_map(|d| d.all("from").chain(d.all("to")).chain(d.all("at")).cloned().collect::<Vec<_>>())
-            .chain(node.all("work_at").cloned());
-        let kept = node.all("keep_out").flat_map(|k| k.all("item").cloned().collect::<Vec<_>>());
-        for end in ends.chain(kept).collect::<Vec<_>>() {
-            self.mention(&end);
-        }
-    }
-
-    fn task(&self, node: &Node) -> Option<AskedTask> {
-        let verb = node.field("verb")?.values("task").next()?;
-        Some(self.task_of(verb, node))
-    }
-
-    fn task_of(&self, verb: &str, node: &Node) -> AskedTask {
-        let what: Vec<Range<usize>> = node.all("what").map(|w| w.tokens.clone()).collect();
-        let what = what.into_iter().reduce(|a, b| a.start..b.end).map(|t| self.reading.written(t).to_owned());
-        let to = node.all("to").chain(node.all("at")).map(|n| self.subject(n)).collect();
-        AskedTask { verb: verb.to_owned(), what, from: node.field("from").map(|n| self.subject(n)), to }
-    }
-
     /// States a room or an object that is only spoken of.
     fn mention(&mut self, node: &Rc<Node>) {
         let from = self.facts.len();
@@ -718,6 +419,9 @@ impl Maker<'_> {
     }
 
     fn total(&mut self, node: &Node) {
+        if node.field("one_hold").is_some() {
+            return self.rooms_of_places(node);
+        }
         let rooms = count(node).map(|c| c.n);
         self.say(node, Fact::Only(OnlyAsk { rooms, closed: false }));
         let noun = node.field("noun").map_or("", |n| self.reading.written(n.tokens.clone()));
@@ -725,6 +429,7 @@ impl Maker<'_> {
     }
 
     fn shorthand(&mut self, node: &Node) {
+        let area_m2 = node.field("area").and_then(|a| measure(a, "area"));
         // each part is a number and what it counts: rooms by id, with `+` between those that go together
         let mut number = None;
         for (name, part) in &node.fields {
@@ -742,10 +447,8 @@ impl Maker<'_> {
                         let n = times.unwrap_or(if i == 0 { n.saturating_sub(less) } else { 1 });
                         if n > 0 {
                             let room = Subject::known(id, self.reading.written(node.tokens.clone()));
-                            self.say(
-                                node,
-                                Fact::Rooms(RoomsAsk { room, count: AskedCount::exactly(n), ..RoomsAsk::default() }),
-                            );
+                            let count = AskedCount::exactly(n);
+                            self.say(node, Fact::Rooms(RoomsAsk { room, count, area_m2, ..RoomsAsk::default() }));
                         }
                     }
                 }
@@ -788,252 +491,4 @@ impl Maker<'_> {
             self.state(&inner, Around::default());
         }
     }
-}
-
-/// Returns what places are counted.
-fn places_of(held: &Node) -> Option<PlaceKind> {
-    held.values("capacity")
-        .chain(held.field("what").into_iter().flat_map(|w| w.values("capacity")))
-        .find_map(place_kind)
-}
-
-/// Returns the number that a node has, as it binds.
-fn count(node: &Node) -> Option<AskedCount> {
-    let count = node.field("count")?;
-    number(count)
-}
-
-/// Returns how many rooms are asked for that men and women have their own of: `told` where the prompt says a number.
-fn by_sex(sex: &Node, told: Option<AskedCount>, count: AskedCount) -> AskedCount {
-    let n = told.map_or(1, |c| c.n.max(1));
-    match sex.values("sex").next() {
-        // "one bathroom for each sex"
-        Some("per") => AskedCount { n: 2 * n, ..count },
-        // "two toilets for men and women"
-        Some("each") => AskedCount { n: n.max(2), ..count },
-        _ => count,
-    }
-}
-
-/// Returns the whole of a number that ends in a half.
-fn half(node: &Node) -> Option<u32> {
-    let count = node.field("count")?;
-    let n = count.number.or_else(|| count.field("n").and_then(|n| n.number))?;
-    (n.fract() == 0.5 && n < 100.0).then_some(n as u32)
-}
-
-/// Returns the number of a plural without one.
-fn several(node: &Node, fields: &[&str]) -> Option<AskedCount> {
-    let noun = fields.iter().find_map(|f| if node.head_last { node.all(f).last() } else { node.field(f) })?;
-    noun.plural.then_some(AskedCount::at_least(2))
-}
-
-fn number(count: &Node) -> Option<AskedCount> {
-    if count.is("quantity", Some("several")) || count.field("several").is_some() {
-        return Some(AskedCount::at_least(2));
-    }
-    // "4 Stellplätze für Löschfahrzeuge": the number of the places is that of the vehicles
-    if let Some(inner) = count.field("count") {
-        return number(inner);
-    }
-    let n = count.number.or_else(|| count.field("n").and_then(|n| n.number));
-    let n = n.or_else(|| count.values("quantity").find_map(|v| v.parse().ok()))?;
-    // "ein", "une": an article, or one
-    if count.rule.is_none() && n == 1.0 && count.is("particle", Some("article")) {
-        return None;
-    }
-    if !(0.0..=f64::from(u32::MAX)).contains(&n) {
-        return None;
-    }
-    let most = count.field("most").and_then(|m| m.number);
-    let (n, bound) = most.map_or((n, bound(count)), |_| (n, Bound::AtLeast));
-    Some(AskedCount { n: n.ceil() as u32, bound })
-}
-
-fn household(node: &Node) -> Option<AskedCount> {
-    let who = node.field("who").map_or(node, |w| w);
-    who.values("household").find_map(|v| v.parse().ok()).map(AskedCount::exactly)
-}
-
-fn bound(node: &Node) -> Bound {
-    let inner = node.field("count").map(|n| &**n);
-    let of = |n: &Node| {
-        [("at_least", Bound::AtLeast), ("at_most", Bound::AtMost), ("about", Bound::About)]
-            .into_iter()
-            .find(|(name, _)| n.field(name).is_some())
-            .map(|b| b.1)
-    };
-    of(node).or_else(|| inner.and_then(of)).unwrap_or(Bound::Exactly)
-}
-
-/// Returns a measure in m or m2.
-fn measure(node: &Node, class: &str) -> Option<f64> {
-    if let Some(inner) = node.field(class).filter(|_| node.field("unit").is_none()) {
-        return measure(inner, class);
-    }
-    let n = node.field("n")?;
-    let n = n.number.or_else(|| n.field("n").and_then(|n| n.number))?;
-    let unit = node.field("unit").and_then(|u| u.values(class).find_map(|v| v.parse::<f64>().ok())).unwrap_or(1.0);
-    let value = n * unit;
-    let (least, most) = if class == "area" { (0.5, 1e6) } else { (0.05, 500.0) };
-    (least..=most).contains(&value).then_some(value)
-}
-
-fn sides(node: &Node) -> Option<[f64; 2]> {
-    let sides = node.field("sides")?;
-    let unit = sides.field("unit").and_then(|u| u.values("length").find_map(|v| v.parse::<f64>().ok())).unwrap_or(1.0);
-    let side = |name: &str| {
-        let node = sides.field(name)?;
-        node.number.map(|n| n * unit).or_else(|| measure(node, "length")).filter(|s| (0.5..=500.0).contains(s))
-    };
-    Some([side("first")?, side("second")?])
-}
-
-fn attributes(node: &Node) -> Vec<String> {
-    let mut found: Vec<String> = Vec::new();
-    for attribute in node.all("attribute") {
-        let value = attribute.values("attribute").next().map(str::to_owned);
-        found.extend(value.into_iter().filter(|v| !found.contains(v)).collect::<Vec<_>>());
-    }
-    found
-}
-
-/// Work of robots, and the kind of robot that does it.
-const WORK: &[(&str, &str)] = &[
-    ("bring", "delivery"),
-    ("clean", "cleaning"),
-    ("disinfect", "disinfection"),
-    ("serve", "service"),
-    ("inspect", "inspection"),
-    ("feed", "feeding"),
-];
-
-fn kind_of_work(verb: &str) -> &str {
-    WORK.iter().find(|w| w.0 == verb).map_or(verb, |w| w.1)
-}
-
-fn work_of(kind: &str) -> Option<&'static str> {
-    WORK.iter().find(|w| w.1 == kind).map(|w| w.0)
-}
-
-fn place_kind(value: &str) -> Option<PlaceKind> {
-    from_name(match value {
-        "seat" => "seats",
-        "bed" => "beds",
-        "desk" => "desks",
-        "car" => "cars",
-        "bike" => "bicycles",
-        "animal" => "animals",
-        "pallet" => "pallets",
-        "place" => "treatment",
-        other => other,
-    })
-}
-
-fn relation_kind(node: &Node) -> Option<RelationKind> {
-    let name = if node.senses.is_empty() { node.text.to_string() } else { node.values("relation").next()?.to_owned() };
-    from_name(match name.as_str() {
-        "near" | "around" | "together" => "next_to",
-        "open" => "open_to",
-        "apart" => "away_from",
-        "sight" => "sees",
-        other => other,
-    })
-}
-
-/// Returns the value of an enum of the documents by its name there.
-fn from_name<T: DeserializeOwned>(name: &str) -> Option<T> {
-    serde_json::from_value(serde_json::Value::String(name.to_owned())).ok()
-}
-
-/// Returns a fact in one line, as the examples of rules and `--explain` have it.
-pub(crate) fn shown(fact: &Fact) -> String {
-    match fact {
-        Fact::Rooms(asked) => shown_rooms(asked),
-        Fact::Objects(o) => {
-            let attributes: String = o.attributes.iter().map(|a| format!(" {a}")).collect();
-            let room = shown_within(o.room.as_ref(), o.each_room);
-            format!("objects {} {}{attributes}{room}", shown_count(&o.count), shown_subject(&o.object))
-        }
-        Fact::Capacity(c) => {
-            let groups = c.groups.map_or(String::new(), |g| format!(" in {g} groups"));
-            let room = shown_within(c.room.as_ref(), c.each_room);
-            let room = c
-                .of_rooms
-                .map_or(room.clone(), |n| room.replace(" in ", &format!(" in {n} of ")).replace("of each ", "of "));
-            let among = if c.among { "of " } else { "" };
-            format!("capacity {} {among}{}{room}{groups}", shown_count(&c.count), named(&c.of))
-        }
-        Fact::Relation(r) => {
-            format!("relation {} {} {}", shown_subject(&r.a), named(&r.relation), shown_subject(&r.b))
-        }
-        Fact::Storeys(s) => {
-            format!("storeys {}{}", shown_count(&s.count), if s.basement { " and a basement" } else { "" })
-        }
-        Fact::Area(a) if a.bound == Bound::Exactly => format!("area {}", a.area_m2),
-        Fact::Area(a) => format!("area {} {}", a.area_m2, named(&a.bound)),
-        Fact::Robots(asked) => shown_robots(asked),
-        Fact::People(p) => format!("people {} {}", shown_count(&p.count), p.role),
-        Fact::Style(s) => format!("style {}", s.word),
-        Fact::Accessible(a) => {
-            format!("accessible{}", a.room.as_ref().map_or(String::new(), |r| format!(" {}", shown_subject(r))))
-        }
-        Fact::Forbidden(f) => {
-            let what = f.room.iter().chain(&f.object).map(shown_subject).collect::<Vec<_>>().join(" ");
-            format!("forbidden {what}{}", shown_within(f.within.as_ref(), false))
-        }
-        Fact::Only(o) => match (o.rooms, o.closed) {
-            (Some(n), false) => format!("rooms in total {n}"),
-            _ => "only these".to_owned(),
-        },
-        Fact::Site(s) => format!("site {}", named(&s.kind)),
-        Fact::Other(o) => format!("other '{}'", o.wish),
-    }
-}
-
-fn shown_rooms(r: &RoomsAsk) -> String {
-    let among = if r.among { "of " } else { "" };
-    let mut line = format!("rooms {} {among}{}", shown_count(&r.count), shown_subject(&r.room));
-    r.area_m2.iter().for_each(|a| line += &format!(" {a} m2"));
-    r.sides_m.iter().for_each(|s| line += &format!(" {} x {} m", s[0], s[1]));
-    r.level.iter().for_each(|l| line += &format!(" level {l}"));
-    r.attributes.iter().for_each(|a| line += &format!(" {a}"));
-    r.each.iter().for_each(|e| line += &format!(" each {}", shown_subject(e)));
-    line
-}
-
-fn shown_robots(r: &RobotsAsk) -> String {
-    let mut line = format!("robots {} {}", shown_count(&r.count), r.kind);
-    r.width_m.iter().for_each(|w| line += &format!(" {w} m wide"));
-    r.length_m.iter().for_each(|w| line += &format!(" {w} m long"));
-    for task in &r.tasks {
-        line += &format!(" {}", task.verb);
-        task.what.iter().for_each(|w| line += &format!(" '{w}'"));
-        task.from.iter().for_each(|f| line += &format!(" from {}", shown_subject(f)));
-        task.to.iter().for_each(|t| line += &format!(" to {}", shown_subject(t)));
-    }
-    r.keep_out.iter().for_each(|k| line += &format!(" not in {}", shown_subject(k)));
-    line
-}
-
-fn shown_within(room: Option<&Subject>, each: bool) -> String {
-    room.map_or(String::new(), |r| format!(" in {}{}", if each { "each " } else { "" }, shown_subject(r)))
-}
-
-fn shown_subject(subject: &Subject) -> String {
-    subject.id.clone().unwrap_or_else(|| format!("'{}'", subject.name))
-}
-
-fn shown_count(count: &AskedCount) -> String {
-    match count.bound {
-        Bound::Exactly => count.n.to_string(),
-        Bound::AtLeast => format!("{}+", count.n),
-        Bound::AtMost => format!("{}-", count.n),
-        Bound::About => format!("~{}", count.n),
-    }
-}
-
-/// Returns the name that documents have for a value of an enum.
-fn named<T: Serialize>(value: &T) -> String {
-    serde_json::to_value(value).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }

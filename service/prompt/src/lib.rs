@@ -28,6 +28,7 @@ mod parse;
 mod pattern;
 mod places;
 mod reader;
+mod shown;
 mod storeys;
 mod subjects;
 mod vocabulary;

@@ -1,7 +1,9 @@
 //! Countries and cities, as words.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::LazyLock;
 
+use d3dgen_language::fold;
 use d3dgen_model::gazetteer::PLACES;
 use serde::Deserialize;
 
@@ -49,6 +51,12 @@ pub(crate) fn places() -> Vec<Place> {
         format!("{country}|{division}|{}|{}", u8::from(l.city), u8::from(l.strict))
     };
     found.into_iter().map(|(name, line)| Place { value: value(&line), name }).collect()
+}
+
+/// Returns true for the name of a place as it is listed, and no other form of it.
+pub(crate) fn is_name(text: &str) -> bool {
+    static NAMES: LazyLock<BTreeSet<String>> = LazyLock::new(|| places().iter().map(|p| fold(&p.name)).collect());
+    NAMES.contains(&fold(text))
 }
 
 /// What the value of a place says.

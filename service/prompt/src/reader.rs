@@ -11,10 +11,11 @@ use d3dgen_model::gazetteer::{first_floor_is_ground, first_floor_is_ground_in};
 use d3dgen_plugins::Registry;
 
 use crate::building::{building, place, stretch};
-use crate::facts::{Maker, Stated, shown};
+use crate::facts::{Maker, Stated};
 use crate::grammar::Grammar;
 use crate::node::Node;
 use crate::parse::{Applied, parse};
+use crate::shown::shown;
 use crate::storeys;
 use crate::subjects::Known;
 use crate::vocabulary::lexicon;
@@ -77,14 +78,15 @@ impl PromptReader {
             Some(country) => first_floor_is_ground(country),
             None => reading.languages().first().is_some_and(|l| first_floor_is_ground_in(l)),
         };
-        let known = Known::of(&self.registry, domain);
+        let building_type = building.first.as_ref().and_then(|b| b.building_type.as_deref());
+        let known = Known::of(&self.registry, domain, building_type);
         let told = Rc::clone(&known.told_by_a_part);
         let mut maker = Maker { reading: &reading, known, first_is_ground, facts: Vec::new() };
         nodes.iter().for_each(|n| {
             maker.add(n);
         });
         let facts = storeys::settled(maker.facts, building.first.as_ref());
-        let facts = settled(facts);
+        let (facts, spoken_of) = settled(facts);
         let brief = Brief {
             languages: reading.languages().iter().map(|l| (*l).to_owned()).collect(),
             building: building.first,
@@ -92,7 +94,7 @@ impl PromptReader {
             place,
             ..Brief::of_prompt(prompt)
         };
-        let brief = finished(brief, facts, &reading);
+        let brief = finished(brief, facts, &spoken_of, &reading);
         let facts = brief.asks.iter().map(|a| shown(&a.fact)).collect();
         ReadPrompt {
             brief,
@@ -211,23 +213,26 @@ impl Elsewhere {
     }
 }
 
-/// Drops what is asked for elsewhere already, and doubles.
-fn settled(facts: Vec<Stated>) -> Vec<Stated> {
+/// Drops what is asked for elsewhere already, and doubles; returns what is left, and the words of what is not.
+fn settled(facts: Vec<Stated>) -> (Vec<Stated>, Vec<Range<usize>>) {
     let elsewhere = Elsewhere::of(&facts);
     let mut kept: Vec<Stated> = Vec::new();
+    let mut spoken_of = Vec::new();
     for stated in facts {
         let double = kept.iter().any(|k| k.fact == stated.fact && k.tokens == stated.tokens);
-        if !double && !elsewhere.has(&stated, &kept) {
+        if double || elsewhere.has(&stated, &kept) {
+            spoken_of.push(stated.tokens);
+        } else {
             kept.push(stated);
         }
     }
     kept.sort_by_key(|f| (f.tokens.start, f.tokens.end));
-    kept
+    (kept, spoken_of)
 }
 
-/// Puts facts into a brief, and accounts for every word.
-fn finished(mut brief: Brief, facts: Vec<Stated>, reading: &Reading) -> Brief {
-    let mut covered = BTreeSet::new();
+/// Puts facts into a brief, and accounts for every word; `spoken_of` are words of what is asked for by others.
+fn finished(mut brief: Brief, facts: Vec<Stated>, spoken_of: &[Range<usize>], reading: &Reading) -> Brief {
+    let mut covered: BTreeSet<usize> = spoken_of.iter().cloned().flatten().collect();
     for (i, stated) in facts.into_iter().take(MAX_ASKS).enumerate() {
         covered.extend(stated.tokens.clone());
         covered.extend(stated.also.clone().into_iter().flatten());

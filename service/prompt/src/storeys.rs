@@ -43,7 +43,7 @@ fn on_storeys(stated: Stated, top: i32) -> Vec<Stated> {
 fn is_one_storey_of_many(facts: &[Stated], building: Option<&AskedBuilding>) -> bool {
     let kind = building.and_then(|b| b.building_type.as_deref());
     let within = kind.is_some_and(|k| facts_data().within_a_storey.iter().any(|w| w == k));
-    let several = facts.iter().any(|f| matches!(&f.fact, Fact::Storeys(s) if s.count.n > 1));
+    let several = facts.iter().any(|f| f.storey.is_none() && matches!(&f.fact, Fact::Storeys(s) if s.count.n > 1));
     let mut named = facts.iter().filter_map(|f| f.storey);
     let first = named.next();
     let below = first.is_some_and(|s| matches!(s, Storey::At(level) if level < 0) || s == Storey::Each);
@@ -55,7 +55,7 @@ fn on_its_storey(facts: Vec<Stated>) -> Vec<Stated> {
     let mut out: Vec<Stated> = Vec::with_capacity(facts.len());
     for mut stated in facts {
         if stated.storey.take().is_some() {
-            let alone = matches!(stated.fact, Fact::Other(_));
+            let alone = matches!(stated.fact, Fact::Other(_) | Fact::Storeys(_));
             let words = stated.also.take().unwrap_or(stated.tokens.clone());
             if !out.iter().any(|o| matches!(o.fact, Fact::Site(_)) && o.tokens == words) {
                 let site = Fact::Site(SiteAsk { kind: SiteKind::Inside });

@@ -7,7 +7,8 @@ use std::sync::LazyLock;
 
 use d3dgen_language::{Reading, fold};
 use d3dgen_model::brief::Subject;
-use d3dgen_model::domain::Domain;
+use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, Program};
+use d3dgen_model::offer::furniture;
 use d3dgen_plugins::Registry;
 use serde::Deserialize;
 
@@ -40,6 +41,8 @@ pub(crate) fn facts_data() -> &'static FactsData {
 pub(crate) struct Known<'d> {
     pub rooms: BTreeSet<String>,
     pub objects: BTreeSet<String>,
+    /// What such a building has.
+    program: Option<&'d Program>,
     domain: Option<&'d Domain>,
     registry: Option<&'d Registry>,
     /// Names of rooms of which only a part told the type, with that type.
@@ -47,10 +50,13 @@ pub(crate) struct Known<'d> {
 }
 
 impl<'d> Known<'d> {
-    /// Returns what a domain knows; nothing for a building that no domain knows.
-    pub fn of(registry: &'d Registry, domain: Option<&str>) -> Self {
+    /// Returns what a domain and a kind of building in it know; nothing for a building that no domain knows.
+    pub fn of(registry: &'d Registry, domain: Option<&str>, building_type: Option<&str>) -> Self {
         let Some(plugin) = domain.and_then(|d| registry.get(d)) else { return Self::default() };
+        let kind = plugin.domain().building_types.iter().find(|b| Some(b.id.as_str()) == building_type);
+        let program = kind.and_then(|b| plugin.domain().program(&b.program));
         Self {
+            program,
             rooms: plugin.domain().room_types.iter().map(|r| r.id.clone()).collect(),
             objects: plugin.domain().objects.iter().map(|o| o.id.clone()).collect(),
             domain: Some(plugin.domain()),
@@ -87,7 +93,11 @@ impl<'d> Known<'d> {
         let fits = || node.values(class).filter(|v| known.contains(*v));
         // the building's own word for it before that of other buildings: "1인실" is an office elsewhere
         let own = |v: &&str| fits().nth(1).is_some() && self.has_word(class, v, &node.text);
-        fits().find(named).or_else(|| fits().find(own)).or_else(|| fits().next()).or_else(|| node.values(class).next())
+        // "кабинет" of a practice is to treat in, of an office to work in
+        let usual =
+            |v: &&str| class == "room" && self.program.is_some_and(|p| p.rooms.iter().any(|e| e.room_type == **v));
+        let first = || fits().next().or_else(|| node.values(class).next());
+        fits().find(named).or_else(|| fits().find(own)).or_else(|| fits().find(usual)).or_else(first)
     }
 
     /// Returns true where the building's own domain has a word for a room or object.
@@ -99,7 +109,29 @@ impl<'d> Known<'d> {
         words.is_some_and(|w| w.values().flatten().any(|w| fold(w) == word))
     }
 
-    /// Returns the room or object that a node of the grammar is about: a field of that class, or words of the prompt's own.
+    /// Returns the object that a word names and a room is furnished with: the bikes of a spinning studio are no places to park.
+    pub fn thing_of(&self, room: &Subject, word: &Node) -> Option<String> {
+        let domain = self.domain?;
+        let kind = domain.room_type(room.id.as_deref()?)?;
+        word.values("object").find(|id| furniture(domain, kind).any(|own| own == *id)).map(str::to_owned)
+    }
+
+    /// Returns the room that a mere "room" or "hall" is in such a building, or the one that it is there for.
+    pub fn of_kind(&self) -> Option<&str> {
+        let first = || self.program?.rooms.first().map(|entry| &entry.room_type);
+        self.program?.means.get(GENERIC_ROOM_TYPE).or_else(first).map(String::as_str)
+    }
+
+    /// Returns the object that a word names beside the room which has several of it: the tills of a checkout.
+    pub fn station_of(&self, node: &Node) -> Option<String> {
+        let kind = self.domain?.room_type(self.sense(node, "room")?)?;
+        let line = kind.furnishing.first().filter(|line| line.required && line.max > 1)?;
+        let station = &self.domain?.anchor(&line.item)?.id;
+        node.values("object").any(|id| id == station).then(|| station.clone())
+    }
+
+    /// Returns the room or object that a node of the grammar is about: a field of that class, or words of the prompt's own. With a
+    /// word beside it that nobody knows, a room of another trade is one of its own name: no brewery's "cella fredda" is a prison's.
     pub fn subject(&self, node: &Node, class: &str, reading: &Reading) -> Subject {
         let own: Vec<&Node> = node.all("own").map(|n| &**n).collect();
         let named = node.field(class);
@@ -107,6 +139,8 @@ impl<'d> Known<'d> {
         let ends = own.iter().map(|n| n.tokens.clone()).chain(named.map(|n| n.tokens.clone()));
         let span = ends.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end));
         let name = span.map_or("", |s| reading.written(s)).to_owned();
+        let strange = class == "room" && own.iter().any(|n| n.is_unknown());
+        let id = id.filter(|id| !strange || self.rooms.is_empty() || self.rooms.contains(id));
         let told = || likely::room_called(&name, id.as_deref(), reading.languages(), |room| self.rooms.contains(room));
         let Some(likely) = (class == "room").then(told).flatten() else { return Subject { id, name } };
         self.told_by_a_part.borrow_mut().insert(name.clone(), likely.to_owned());

@@ -23,6 +23,9 @@ const MISSED: usize = 2;
 /// Code of what is assumed where a building has parts of which one was planned.
 const PART_PLANNED: &str = "part_planned";
 
+/// Code of what is told where a request overrules the kind of building that its words suggest.
+const BY_FLAG: &str = "domain_flag";
+
 /// Codes of what is assumed where a prompt names no building that a domain knows.
 const NO_BUILDING: [&str; 2] = ["default_domain", "domain_from_rooms"];
 
@@ -64,6 +67,7 @@ fn rooms_of_prompt(brief: &Brief, request: &Request, registry: &Registry) -> Res
         return rooms_of(brief, request, registry);
     }
     let graph = scene_graph::generate_with(brief, request, registry)?;
+    let graph = in_its_kind(brief, graph, request, registry)?;
     let unnamed = graph.assumptions.iter().any(|n| NO_BUILDING.contains(&n.code.as_str()));
     // a kind of building that no domain knows is no home by its rooms
     let unknown = free && unnamed && brief.building.as_ref().is_some_and(|b| b.domain.is_none());
@@ -81,6 +85,22 @@ fn likely_rooms(brief: &Brief, told: &BTreeMap<String, String>, graph: &SceneGra
         told.iter().filter(asked).map(|(name, id)| format!("`{name}` ({})", id.replace('_', " "))).collect();
     let message = format!("no room is known by these names; furnished by a part of them: {}", all.join(", "));
     (!all.is_empty()).then(|| Note::new("room_likely", message))
+}
+
+/// Returns the rooms of a prompt in the kind of building that its words name, where one odd room had moved them to another: a house
+/// with a music room is a house.
+fn in_its_kind(brief: &Brief, graph: SceneGraph, request: &Request, registry: &Registry) -> Result<SceneGraph, Error> {
+    let named = brief.building.as_ref().filter(|b| b.confidence >= 1.0 && !b.words.is_empty());
+    let domain = named.and_then(|b| b.domain.as_ref()).filter(|d| **d != graph.domain && request.domain.is_none());
+    let Some(domain) = domain else { return Ok(graph) };
+    let flagged = Request { domain: Some(domain.clone()), ..request.clone() };
+    let mut other = scene_graph::generate_with(brief, &flagged, registry)?;
+    // two kinds of offices are near enough
+    if scene_graph::is_home(&other, registry) == scene_graph::is_home(&graph, registry) {
+        return Ok(graph);
+    }
+    other.conflicts.retain(|note| note.code != BY_FLAG);
+    Ok(other)
 }
 
 /// Returns the rooms that were made of the words, or those of the brief alone where these keep more of what it asks for.

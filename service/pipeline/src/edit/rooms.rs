@@ -148,6 +148,7 @@ fn described(graph: &SceneGraph, domain: &Domain, kind: &RoomType, area_m2: Opti
         entrance: false,
         level: Default::default(),
         unit: None,
+        garden_door: false,
         locked: false,
     }
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests are tests
 
+mod briefs;
 mod clutter;
 mod common;
 mod corridors;

@@ -8,13 +8,15 @@ use std::ops::Range;
 
 use d3dgen_model::brief::{Ask, Bound, Brief, CapacityAsk, Fact, PlaceKind, RoomsAsk, SiteKind};
 use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
-use d3dgen_model::offer;
+use d3dgen_model::offer::{self, has_counters};
 use d3dgen_model::scene_graph::Note;
 use d3dgen_plugins::Registry;
 
 use super::machines;
+use super::site;
 use super::wishes::Facts;
 use crate::levels::storeys::Storeys;
+use crate::people::held::Held;
 use crate::people::seats::Called;
 use crate::reading::{Reading, Understood};
 use crate::request::MAX_AREA_M2;
@@ -43,7 +45,9 @@ pub(crate) fn restore(reading: &mut Reading, brief: &Brief, registry: &Registry)
         let seats: Vec<_> =
             facts.seats.iter().filter(|h| wished(&h.room_type) && unseated(&h.room_type)).cloned().collect();
         reading.seats.extend(seats);
+        restore_stations(reading, &facts);
     }
+    reading.wishes.garden.clone_from(&facts.wishes.garden);
     reading.errands = machines::restored(&reading.robots, &reading.errands, brief, &facts);
     for thing in &facts.things {
         let asked = facts.things.iter().filter(|t| t.object == thing.object).count();
@@ -58,8 +62,28 @@ pub(crate) fn restore(reading: &mut Reading, brief: &Brief, registry: &Registry)
     reading.area_m2 = reading.area_m2.or(facts.area_m2.filter(usable));
 }
 
-/// Takes the storey on which a flat lies in its house for no storey of the flat.
+/// Gives rooms what they have many of, where nothing was read of that, with the room where none was read.
+fn restore_stations(reading: &mut Reading, facts: &Facts) {
+    let told = |id: &str| reading.seats.iter().chain(&reading.stationed).any(|h| h.room_type == id);
+    let lost: Vec<Held> = facts.stations.iter().filter(|h| !told(&h.room_type)).cloned().collect();
+    let counters = |h: &&Held| reading.domain.room_type(&h.room_type).is_some_and(|k| has_counters(reading.domain, k));
+    let lost_counters: Vec<Held> =
+        facts.seats.iter().filter(counters).filter(|h| !told(&h.room_type)).cloned().collect();
+    for held in lost.iter().chain(&lost_counters) {
+        let own = facts.wishes.wishes.iter().find(|w| w.room_type == held.room_type);
+        if !reading.wishes.wishes.iter().any(|w| w.room_type == held.room_type) {
+            reading.wishes.wishes.extend(own.cloned());
+        }
+    }
+    reading.stationed.extend(lost);
+    reading.seats.extend(lost_counters);
+}
+
+/// Takes the storey on which a flat lies in its house for no storey of the flat, and a house in a row for one between others.
 fn restore_site(reading: &mut Reading, brief: &Brief) {
+    if let Some(row) = site::in_a_row(brief, reading.domain, reading.building_type.as_deref()) {
+        reading.building_type = Some(row);
+    }
     let inside = |a: &Ask| matches!(&a.fact, Fact::Site(s) if s.kind == SiteKind::Inside);
     let storeys = |a: &Ask| match &a.fact {
         Fact::Storeys(storeys) => storeys.count.n > 1 || storeys.basement,

@@ -6,6 +6,7 @@
 
 mod lost;
 mod machines;
+mod site;
 mod unknown;
 mod wishes;
 
@@ -174,6 +175,7 @@ fn site_of<'a>(brief: &Brief, request: &Request, registry: &'a Registry, notes: 
     let domain = plugin.domain();
     let own_type = named.filter(|b| b.domain.as_deref() == Some(&id)).and_then(|b| b.building_type.clone());
     let own_type = own_type.or(stand.map(|s| s.building_type));
+    let own_type = site::in_a_row(brief, domain, own_type.as_deref()).or(own_type);
     let building = Building { building_type: own_type, ..Building::none(&id) };
     let program = program_of(domain, building.building_type.as_deref());
     let flag = request.country.as_deref().and_then(places::code_of);

@@ -1,6 +1,6 @@
 use d3dgen_model::brief::{
     Ask, AskedBuilding, AskedCount, AskedPlace, AskedTask, Brief, CapacityAsk, Fact, ForbiddenAsk, ObjectsAsk, OnlyAsk,
-    PeopleAsk, PlaceKind, RelationAsk, RelationKind, RobotsAsk, RoomsAsk, StoreysAsk, Subject,
+    PeopleAsk, PlaceKind, RelationAsk, RelationKind, RobotsAsk, RoomsAsk, SiteAsk, SiteKind, StoreysAsk, Subject,
 };
 use d3dgen_model::scene_graph::{Connector, SceneGraph};
 use d3dgen_plugins::Registry;
@@ -229,4 +229,23 @@ fn what_the_reader_of_words_left_out_comes_from_the_brief() {
     let with = crate::generate_with(&brief, &request, &registry).expect("it can be planned");
     assert!(!lost(&with) && with.rooms.iter().any(|r| r.name == "Flumbarium"), "{:?}", with.conflicts);
     assert_eq!(count(&with, "bedroom"), 2);
+}
+
+#[test]
+fn tills_stand_in_the_room_that_has_many_of_them() {
+    let tills =
+        ObjectsAsk { object: subject("checkout_counter"), count: AskedCount::exactly(5), ..ObjectsAsk::default() };
+    let shop = graph(Some(building("general", Some("supermarket"))), vec![Fact::Objects(tills)]);
+    let held: Vec<u32> = shop.rooms.iter().filter_map(|r| r.occupants).filter(|n| *n == 5).collect();
+    assert_eq!(held, [5], "{:?}", shop.rooms.iter().map(|r| (&r.id, r.occupants)).collect::<Vec<_>>());
+}
+
+#[test]
+fn how_a_house_stands_and_where_its_garden_door_is_reach_the_plan() {
+    let kitchen = RoomsAsk { room: subject("kitchen"), attributes: vec!["garden_door".into()], ..RoomsAsk::default() };
+    let terraced = Fact::Site(SiteAsk { kind: SiteKind::Terraced });
+    let house = graph(Some(building("residential", Some("house"))), vec![Fact::Rooms(kitchen), terraced]);
+    assert_eq!(house.building_type.as_deref(), Some("terraced_house"));
+    let doors: Vec<&str> = house.rooms.iter().filter(|r| r.garden_door).map(|r| r.room_type.as_str()).collect();
+    assert_eq!(doors, ["kitchen"]);
 }

@@ -32,6 +32,8 @@ const SIZES: [(&str, f64); 2] = [("large", 1.4), ("small", 0.75)];
 const PEOPLE: [(&str, u32); 2] = [("single", 1), ("double", 2)];
 /// Attribute of rooms that people in wheelchairs use.
 const ACCESSIBLE: &str = "accessible";
+/// Attribute of rooms with a door to the garden.
+const GARDEN_DOOR: &str = "garden_door";
 /// Most storeys above the ground, as for prompts.
 const MOST_LEVELS: u32 = 12;
 /// Most objects of one kind that one fact asks for.
@@ -359,6 +361,7 @@ impl<'a> Facts<'a> {
             match attribute.as_str() {
                 "open" => self.wishes.open.push(id.clone()),
                 "separate" | "closed" => self.wishes.closed.push(id.clone()),
+                GARDEN_DOOR => self.wishes.garden.push(id.clone()),
                 ACCESSIBLE => self.accessible = true,
                 _ => {}
             }
@@ -404,10 +407,41 @@ impl<'a> Facts<'a> {
 
     fn objects(&mut self, asked: &ObjectsAsk) {
         let Some(object) = asked.object.id.clone() else { return };
+        if self.stations(&object, asked) {
+            return;
+        }
         let room_type = asked.room.as_ref().map(|room| self.type_of(room));
         let times = if asked.each_room { 1 } else { asked.count.n.clamp(1, MOST_THINGS) };
         let thing = Thing { object, room_type, each: asked.each_room };
         self.things.extend(std::iter::repeat_n(thing, times as usize));
+    }
+
+    /// Gives so many of what one room has many of to that room: the tills of a checkout, the pumps of a forecourt. Returns false for
+    /// all other objects.
+    fn stations(&mut self, object: &str, asked: &ObjectsAsk) -> bool {
+        let (Some(domain), n) = (self.domain, asked.count.n) else { return false };
+        if !is_told(asked.count) || n < 2 || asked.each_room {
+            return false;
+        }
+        let meant = asked.room.as_ref().map(|room| self.type_of(room));
+        let has_many = |kind: &&RoomType| {
+            let line = kind.furnishing.first().filter(|line| line.required && line.max > 1);
+            let counted = offer::has_counters(domain, kind) || !kind.places.is_empty();
+            let here = meant.as_ref().is_none_or(|id| *id == kind.id);
+            here && counted && line.and_then(|line| domain.anchor(&line.item)).is_some_and(|o| o.id == object)
+        };
+        let wished = self.wishes.wishes.iter().filter_map(|w| domain.room_type(&w.room_type)).find(has_many);
+        let program = self.program.iter().flat_map(|p| &p.rooms);
+        let usual = || program.filter_map(|e| domain.room_type(&e.room_type)).find(has_many);
+        let Some(kind) = wished.or_else(usual) else { return false };
+        if wished.is_none() {
+            self.wish(&kind.id, &kind.label, AskedCount::exactly(1), true);
+        }
+        let count = self.wishes.wishes.iter().find(|w| w.room_type == kind.id).map_or(1, |w| w.count.max(1));
+        let held = Held { room_type: kind.id.clone(), count, beds: n.div_ceil(count) };
+        let counters = offer::has_counters(domain, kind);
+        self.hold(if counters { PlaceKind::Counters } else { PlaceKind::Treatment }, held);
+        true
     }
 
     fn capacity(&mut self, asked: &CapacityAsk) {

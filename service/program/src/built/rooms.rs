@@ -99,6 +99,7 @@ pub(crate) fn describe(reading: &mut Reading, planned: &[Planned]) -> Vec<GraphR
             locked: false,
             level: 0,
             unit: room.unit.clone(),
+            garden_door: reading.wishes.garden.contains(&room.room_type),
         });
     }
     rooms
@@ -155,6 +156,7 @@ pub(crate) fn circulation(reading: &Reading) -> GraphRoom {
         locked: false,
         level: 0,
         unit: None,
+        garden_door: false,
     }
 }
 

@@ -103,6 +103,8 @@ pub(crate) struct Wishes {
     pub closed: Vec<String>,
     /// Types of rooms that are to be near the entrance of the building.
     pub by_entrance: Vec<String>,
+    /// Types of rooms that have a door to the garden.
+    pub garden: Vec<String>,
     /// True when some charging place near a room is asked for.
     pub charging_room: bool,
     /// True when charging is mentioned at all.
