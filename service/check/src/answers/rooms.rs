@@ -182,7 +182,7 @@ impl<'a> Asked<'a> {
             "separate" | "closed" => all(&|r| plan.doors_of(&r.id).all(|d| d.kind != DoorKind::Open)),
             "large" => all(&|r| area(r) >= usual(r)),
             "small" => all(&|r| area(r) <= usual(r)),
-            "garden_door" | "outdoor_door" => all(&|r| plan.doors_of(&r.id).any(outdoors)),
+            "garden_door" | "outdoor_door" => all(&|r| plan.doors_of(&r.id).any(|d| outdoors(d) && !d.entrance)),
             "own_bathroom" => all(&|r| self.doors_between(&r.id, wet).next().is_some()),
             "own_entrance" => all(&|r| plan.doors_of(&r.id).any(outdoors)),
             other => self.other_attribute(other, rooms),

@@ -4,7 +4,7 @@ use d3dgen_model::brief::{
     AccessAsk, AreaAsk, Ask, AskedCount, Bound, ForbiddenAsk, OnlyAsk, SiteAsk, SiteKind, StoreysAsk, StyleAsk,
 };
 use d3dgen_model::courts;
-use d3dgen_model::domain::GENERIC_ROOM_TYPE;
+use d3dgen_model::domain::{Attached, GENERIC_ROOM_TYPE};
 use d3dgen_model::offer::Wet;
 use d3dgen_model::report::Fate;
 use d3dgen_model::scene_graph::GraphRoom;
@@ -39,12 +39,22 @@ impl Asked<'_> {
         if kept { Finding { fate: Fate::Honored, reason: String::new(), ..found } } else { found }
     }
 
-    /// A unit within a house is one where it has one storey; how a building stands among others changes no plan beside that.
+    /// How a building stands among others follows from its kind: houses in a row have walls of their neighbors, flats lie in a house.
+    /// A unit of one storey is one within a house too.
     pub(super) fn site(&self, asked: &SiteAsk) -> Finding {
-        let level = self.world.scene_graph.rooms.first().map(|r| r.level);
-        let flat = self.world.scene_graph.rooms.iter().all(|r| Some(r.level) == level);
-        let reason = || "how a building stands among others changes no plan yet".into();
-        Finding::when(asked.kind == SiteKind::Inside && flat, Vec::new(), reason)
+        let graph = &self.world.scene_graph;
+        let level = graph.rooms.first().map(|r| r.level);
+        let on_one_storey = graph.rooms.iter().all(|r| Some(r.level) == level);
+        let kind = self.domain.building_types.iter().find(|b| Some(&b.id) == graph.building_type.as_ref());
+        let attached = kind.and_then(|b| b.attached);
+        let (kept, reason) = match asked.kind {
+            SiteKind::Inside => (on_one_storey || attached == Some(Attached::Flat), "the building has a house of its own"),
+            SiteKind::Terraced => (attached == Some(Attached::Row), "no wall of it is a neighbor's"),
+            SiteKind::FreeStanding => (attached.is_none(), "it is built wall to wall with neighbors"),
+            SiteKind::SemiDetached => (false, "no plan has a neighbor at one side only"),
+            SiteKind::Corner => (false, "no plan has neighbors at two sides that meet"),
+        };
+        Finding::when(kept, Vec::new(), || reason.into())
     }
 
     pub(super) fn style(&self, asked: &StyleAsk) -> Finding {

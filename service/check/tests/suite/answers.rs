@@ -381,3 +381,20 @@ fn a_robot_rests_where_it_was_said_and_stays_out_where_it_was_said() {
         "it drives through {goal}"
     );
 }
+
+#[test]
+fn how_a_building_stands_is_answered_by_its_kind() {
+    let sample = &SAMPLES[FLAT];
+    let fate = |kind: &str, asked: SiteKind| {
+        let mut world = sample.world.clone();
+        world.scene_graph.building_type = Some(kind.into());
+        let brief = worded("", &[("", Fact::Site(SiteAsk { kind: asked }))], &[]);
+        fates(sample, &world, brief)[0]
+    };
+    assert_eq!(fate("terraced_house", SiteKind::Terraced), Fate::Honored);
+    assert_eq!(fate("house", SiteKind::Terraced), Fate::LeftOut);
+    assert_eq!(fate("house", SiteKind::FreeStanding), Fate::Honored);
+    assert_eq!(fate("flat", SiteKind::FreeStanding), Fate::LeftOut);
+    assert_eq!(fate("terraced_house", SiteKind::SemiDetached), Fate::LeftOut);
+    assert_eq!(fate("flat", SiteKind::Inside), Fate::Honored);
+}
