@@ -440,6 +440,12 @@ impl Maker<'_> {
                     // "an LDK" counts no bedrooms
                     let counted = number.is_some() || !ids.contains('+') || ids.contains('*');
                     let n = number.take().unwrap_or(1.0).clamp(0.0, 1000.0) as u32;
+                    // "un bureau de cinq pièces": rooms of any kind, where nobody lives
+                    let lives = |id: &str| self.known.rooms.is_empty() || self.known.rooms.contains(id);
+                    if counted && ids.split_once("-1").is_some_and(|(id, _)| !lives(id)) {
+                        self.say(node, Fact::Only(OnlyAsk { rooms: Some(n), closed: false }));
+                        continue;
+                    }
                     for (i, id) in ids.split('+').enumerate().skip(usize::from(!counted)) {
                         // "bedroom-1": one less than the number, "bedroom*3": so many by itself
                         let (id, less) = id.strip_suffix("-1").map_or((id, 0), |id| (id, 1));

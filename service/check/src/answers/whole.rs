@@ -48,7 +48,9 @@ impl Asked<'_> {
         let kind = self.domain.building_types.iter().find(|b| Some(&b.id) == graph.building_type.as_ref());
         let attached = kind.and_then(|b| b.attached);
         let (kept, reason) = match asked.kind {
-            SiteKind::Inside => (on_one_storey || attached == Some(Attached::Flat), "the building has a house of its own"),
+            SiteKind::Inside => {
+                (on_one_storey || attached == Some(Attached::Flat), "the building has a house of its own")
+            }
             SiteKind::Terraced => (attached == Some(Attached::Row), "no wall of it is a neighbor's"),
             SiteKind::FreeStanding => (attached.is_none(), "it is built wall to wall with neighbors"),
             SiteKind::SemiDetached => (false, "no plan has a neighbor at one side only"),

@@ -122,7 +122,7 @@ fn inner_walls_move_or_say_why_not() {
                         assert!(there, "{prompt}: {} did not move by {by_m}", wall.wall_id);
                         moved += 1;
                     }
-                    Err(Error::Infeasible { .. } | Error::Refused { .. }) => refused += 1,
+                    Err(Error::Breaks { .. } | Error::Infeasible { .. } | Error::Refused { .. }) => refused += 1,
                     Err(error) => panic!("{prompt}: {} by {by_m}: {error}", wall.wall_id),
                 }
             }
@@ -159,7 +159,7 @@ fn doors_and_windows_slide_along_their_walls_or_say_why_not() {
                         );
                         moved += 1;
                     }
-                    Err(Error::Infeasible { .. } | Error::Refused { .. }) => refused += 1,
+                    Err(Error::Breaks { .. } | Error::Infeasible { .. } | Error::Refused { .. }) => refused += 1,
                     Err(error) => panic!("{prompt}: {id} by {by_m}: {error}"),
                 }
             }

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use d3dgen_model::brief::{Ask, Bound, Brief, CapacityAsk, Fact, PlaceKind, RoomsAsk, SiteKind};
-use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE};
+use d3dgen_model::domain::{Domain, GENERIC_ROOM_TYPE, Zone};
 use d3dgen_model::offer::{self, has_counters};
 use d3dgen_model::scene_graph::Note;
 use d3dgen_plugins::Registry;
@@ -183,11 +183,17 @@ fn retype(reading: &mut Reading, brief: &Brief, ask: &Ask, asked: &RoomsAsk) {
     let name = asked.room.name.to_lowercase();
     let name = name.trim_end_matches('s');
     let end_only = |read: &str| {
-        words_for(domain, read).all(|word| word != name) && words_for(domain, id).all(|word| !name.ends_with(word))
+        words_for(domain, read).all(|word| word != name)
+            && words_for(domain, read).any(|word| name.ends_with(word))
+            && words_for(domain, id).all(|word| !name.ends_with(word))
     };
     let less = |u: &&Understood| match &u.room_type {
         Some(read) if domain.room_type_or_lent(read).is_none() => read != id,
-        Some(read) => read != id && u.bytes.end == bytes.end && end_only(read),
+        // rooms to sleep and wash in have names that say it
+        Some(read) => {
+            let plain = domain.room_type_or_lent(read).is_some_and(|k| k.zone != Zone::Night && !k.wet);
+            read != id && plain && u.bytes.end == bytes.end && end_only(read)
+        }
         None => false,
     };
     let Some(named) = reading.understood.iter().filter(here).find(less).and_then(|u| u.room_type.clone()) else {
