@@ -104,20 +104,25 @@ class World:
     def desks(self, rooms):
         return sum(bool(DESK.search(p["object"])) for r in rooms for p in self.in_room(r))
 
-    def seats(self, rooms, guests=False):
-        def one(p):
-            name, width = p["object"], p["size_m"][0]
-            if not SEAT.search(name) or guests and re.search("swivel|task_chair", name):
-                return 0
-            if re.search("sofa|couch", name):
-                return max(int(width / SOFA_SEAT_M), 1)
-            return max(int(width / BENCH_SEAT_M + 1e-9), 1) if re.search("bench|seating|seats$|pew|row", name) else 1
+    def seats_on(self, p):
+        name, width = p["object"], p["size_m"][0]
+        if not SEAT.search(name):
+            return 0
+        if re.search("sofa|couch", name):
+            return max(int(width / SOFA_SEAT_M), 1)
+        return max(int(width / BENCH_SEAT_M + 1e-9), 1) if re.search("bench|seating|seats$|pew|row", name) else 1
 
-        return sum(one(p) for r in rooms for p in self.in_room(r))
+    def seats(self, rooms, guests=False):
+        standing = [p for r in rooms for p in self.in_room(r) if not (guests and re.search("swivel|task_chair", p["object"]))]
+        return sum(map(self.seats_on, standing))
 
     def commonest(self, rooms):
-        kinds = collections.Counter(p["object"] for r in rooms for p in self.in_room(r) if SEAT.search(p["object"]) and "swivel" not in p["object"])
-        return max(kinds.values(), default=0)
+        """The objects of the kind that most people sit on, and the seats on them."""
+        kinds = collections.defaultdict(list)
+        for p in (p for r in rooms for p in self.in_room(r) if SEAT.search(p["object"]) and "swivel" not in p["object"]):
+            kinds[p["object"]].append(self.seats_on(p))
+        most = max(kinds.values(), key=sum, default=[])
+        return {len(most), sum(most)}
 
     def beds(self, rooms, sleepers=False):
         beds = [p for r in rooms for p in self.in_room(r) if BED.search(p["object"])]
@@ -222,7 +227,7 @@ def judge_capacity(world, ask, fact, answer):
         if kind == "beds":
             return {world.beds(rooms)}
         lying = sum("couch" in p["object"] or "chair" in p["object"] or BED.search(p["object"]) is not None for r in rooms for p in world.in_room(r))
-        return {world.desks(rooms), world.seats(rooms), world.seats(rooms, guests=True), world.commonest(rooms), lying}
+        return {world.desks(rooms), world.seats(rooms), world.seats(rooms, guests=True), lying} | world.commonest(rooms)
 
     def holds(rooms):
         over = max(n // 10, 2) if kind == "seats" and fact["count"].get("bound", "exactly") == "exactly" else 0

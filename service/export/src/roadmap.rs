@@ -328,32 +328,35 @@ impl Maker<'_> {
         (0..part.len()).map(|n| root(&part, n)).collect()
     }
 
-    /// Joins the parts of the roadmap along the free floor, the shortest way first.
+    /// Joins the parts of the roadmap along the free floor, the shortest way first; from one dock straight to another only where
+    /// there is no other way to it.
     fn join_parts(&mut self) {
         let mut part = self.parts();
-        for (a, b, path) in self.meetings() {
-            if root(&part, a) == root(&part, b) {
-                continue;
-            }
-            let Some(corners) = self.pulled(&path) else { continue };
-            if corners.len() == 2 && self.docks.contains(&a) && self.docks.contains(&b) {
-                continue;
-            }
-            let mut last = a;
-            let mut joined = true;
-            for at in &corners[1..corners.len() - 1] {
-                let Some(next) = self.add(*at, Place::Corner) else {
-                    joined = false;
-                    break;
-                };
-                part.push(next);
-                self.lane(last, next, &mut part);
-                last = next;
-            }
-            if joined {
-                self.lane(last, b, &mut part);
+        let meetings = self.meetings();
+        for between_docks in [false, true] {
+            for (a, b, path) in &meetings {
+                if root(&part, *a) == root(&part, *b) {
+                    continue;
+                }
+                let Some(corners) = self.pulled(path) else { continue };
+                let straight = corners.len() == 2 && self.docks.contains(a) && self.docks.contains(b);
+                if straight == between_docks {
+                    self.join(&corners, [*a, *b], &mut part);
+                }
             }
         }
+    }
+
+    /// Adds the lanes along a way between two nodes, with a node at each of its corners.
+    fn join(&mut self, corners: &[Point], [a, b]: [usize; 2], part: &mut Vec<usize>) {
+        let mut last = a;
+        for at in &corners[1..corners.len() - 1] {
+            let Some(next) = self.add(*at, Place::Corner) else { return };
+            part.push(next);
+            self.lane(last, next, part);
+            last = next;
+        }
+        self.lane(last, b, part);
     }
 
     fn lane(&mut self, a: usize, b: usize, part: &mut [usize]) {
