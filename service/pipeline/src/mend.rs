@@ -4,7 +4,7 @@
 //! Another seed deals the same rooms anew; where each deal breaks the same rule at the same room, the graph is at fault.
 
 use d3dgen_model::report::{Report, Violation};
-use d3dgen_model::scene_graph::{BY_CIRCULATION, Connector, GraphEdge, GraphRoom, Note, SceneGraph};
+use d3dgen_model::scene_graph::{BY_CIRCULATION, Connector, GraphEdge, GraphRoom, Note, Robot, SceneGraph};
 use d3dgen_model::world::World;
 
 /// Factor by which the floor of a room grows that lacks an object.
@@ -15,6 +15,10 @@ const MOST_BELOW: f64 = 1.3;
 
 /// Returns the graph with what its broken rules ask for; `None` where there is nothing of that kind.
 pub(crate) fn mended(graph: &SceneGraph, report: &Report) -> Option<SceneGraph> {
+    // whoever asks for a robot that the rooms are made for is told which one fits
+    if graph.robots.iter().any(Robot::is_fitted) {
+        return None;
+    }
     let mut out = graph.clone();
     let mut changed = false;
     for broken in violations(report) {
@@ -25,8 +29,9 @@ pub(crate) fn mended(graph: &SceneGraph, report: &Report) -> Option<SceneGraph> 
             _ => None,
         };
         changed |= note.is_some();
-        // a storey that was not large enough yet grows again
-        out.conflicts.extend(note.filter(|n| !graph.conflicts.contains(n)));
+        // two things may be missing in a room, and a storey that was not large enough yet grows again
+        let new = note.filter(|n| !out.conflicts.contains(n));
+        out.conflicts.extend(new);
     }
     changed.then_some(out)
 }
