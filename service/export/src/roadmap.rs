@@ -338,11 +338,17 @@ impl Maker<'_> {
                 if root(&part, *a) == root(&part, *b) {
                     continue;
                 }
-                let Some(corners) = self.pulled(path) else { continue };
+                let Some(mut corners) = self.pulled(path) else { continue };
                 let straight = corners.len() == 2 && self.docks.contains(a) && self.docks.contains(b);
-                if straight == between_docks {
-                    self.join(&corners, [*a, *b], &mut part);
+                if straight != between_docks {
+                    continue;
                 }
+                if straight {
+                    // a lane has a dock at one end at most
+                    let middle = Point::new((corners[0].x + corners[1].x) / 2.0, (corners[0].y + corners[1].y) / 2.0);
+                    corners.insert(1, middle);
+                }
+                self.join(&corners, [*a, *b], &mut part);
             }
         }
     }
