@@ -53,7 +53,7 @@ impl Outline {
             (None, Some(_)) => other.area_in(&self.bounds),
             (Some(_), None) => self.area_in(&other.bounds),
             (Some((at, own)), Some((there, its))) => {
-                let meet = query::intersection_test(at, own, there, its).unwrap_or(true);
+                let meet = query::intersection_test(at, own, there, its).is_ok_and(|found| found.intersecting);
                 let both = self.polygon().zip(other.polygon()).filter(|_| meet);
                 both.map_or(0.0, |(a, b)| a.intersection(&b).unsigned_area())
             }
@@ -78,7 +78,7 @@ impl Outline {
     pub fn distance_to(&self, line: &Segment) -> f64 {
         let (at, own) = self.turned.unwrap_or_else(|| along_walls(&self.bounds));
         let line = Line::new(Vector::new(line.start.x, line.start.y), Vector::new(line.end.x, line.end.y));
-        query::distance(&at, &own, &Pose::IDENTITY, &line).unwrap_or(f64::INFINITY)
+        query::distance(&at, &own, &Pose::IDENTITY, &line).map_or(f64::INFINITY, |found| found.distance)
     }
 
     /// Returns the outline of a turned object.

@@ -13,6 +13,7 @@ pub mod digest;
 pub mod error;
 pub mod maker;
 pub mod part;
+mod physics;
 pub mod row;
 pub mod shelf;
 pub mod snapshot;
@@ -22,5 +23,6 @@ pub mod verify;
 
 mod held_out;
 mod pack;
+mod physics;
 
 pub use error::Error;

@@ -1,0 +1,53 @@
+//! Worlds that stand, and what is wrong with ones that do not.
+
+use std::sync::atomic::AtomicBool;
+
+use d3dgen_export::Subject;
+use d3dgen_export::models::NothingKept;
+use d3dgen_export::scene::{SimScene, SimShape};
+use d3dgen_pipeline::scene_graph::Request;
+use d3dgen_pipeline::task::{self, Terms};
+use d3dgen_plugins::Registry;
+
+use super::*;
+
+fn scene(prompt: &str, seed: u64) -> SimScene {
+    let registry = Registry::builtin();
+    let request = Request { prompt: prompt.into(), seed, ..Request::default() };
+    let made = task::make(&request, &registry, Terms::default(), &AtomicBool::new(false)).unwrap().unwrap();
+    let domain = registry.get(&made.world.scene_graph.domain).unwrap().domain();
+    Subject::new(&made.world, domain, &NothingKept).scene().unwrap().clone()
+}
+
+#[test]
+fn worlds_of_each_domain_stand() {
+    for prompt in ["flat with two bedrooms", "office with 5 rooms", "hospital ward with 5 rooms", "two-storey house"] {
+        let settled = settle(&scene(prompt, 5));
+        assert!(settled.bodies > 10, "{prompt}: {} bodies", settled.bodies);
+        assert_eq!((&settled.moved, &settled.overlaps), (&Vec::new(), &Vec::new()), "{prompt}");
+    }
+}
+
+#[test]
+fn the_same_scene_comes_to_the_same() {
+    let scene = scene("studio flat", 2);
+    assert_eq!(settle(&scene), settle(&scene));
+}
+
+#[test]
+fn what_hangs_in_the_air_falls_and_what_is_in_a_wall_is_told() {
+    let mut scene = scene("flat with two bedrooms", 5);
+    let chair = scene.objects.iter().position(|o| o.mobility != Mobility::Fixed && o.class.contains("chair")).unwrap();
+    scene.objects[chair].at_m[2] += 0.5;
+    let settled = settle(&scene);
+    let fallen = settled.moved.iter().find(|m| m.id == scene.objects[chair].id).expect("it falls");
+    assert!(fallen.way_m > 0.4, "{fallen:?}");
+    assert!(settled.share_at_rest() < 1.0);
+
+    let (x, y) = (scene.walls[0].pieces[0].shape.clone(), scene.objects[chair].at_m[2] - 0.5);
+    let SimShape::Box(wall) = x else { panic!("walls along x and y are boxes") };
+    scene.objects[chair].at_m = [wall.center_m[0], wall.center_m[1], y];
+    let settled = settle(&scene);
+    let overlap = settled.overlaps.iter().find(|o| o.ids.contains(&scene.objects[chair].id)).expect("it is told");
+    assert!(overlap.depth_m > CONTACT_M && overlap.ids.contains(&"building".to_owned()));
+}
