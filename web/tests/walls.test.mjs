@@ -29,6 +29,29 @@ function room(roomId, points) {
 
 const wall = (wallId, roomIds, start, end) => ({ wallId, roomIds, exterior: roomIds.length < 2, thicknessM: 0.12, line: { start: at(start), end: at(end) } });
 
+/** Two rooms whose common wall ends a little before the side of the lower one does. */
+const offset = () => ({
+  floorplan: {
+    rooms: [
+      room("low", [[3.55, 7], [6.35, 7], [6.35, 8.95], [3.55, 8.95]]),
+      room("high", [[3.7, 8.95], [6.35, 8.95], [6.35, 10.9], [3.7, 10.9]]),
+      room("round", [[0, 5], [6.35, 5], [6.35, 7], [3.55, 7], [3.55, 8.95], [3.7, 8.95], [3.7, 10.9], [6.35, 10.9], [6.35, 12], [0, 12]]),
+    ],
+    walls: [
+      wall("low_high", ["low", "high"], [3.7, 8.95], [6.35, 8.95]),
+      wall("stub", ["low", "round"], [3.55, 8.95], [3.7, 8.95]),
+      wall("low_west", ["low", "round"], [3.55, 7], [3.55, 8.95]),
+      wall("low_south", ["low", "round"], [3.55, 7], [6.35, 7]),
+      wall("high_west", ["high", "round"], [3.7, 8.95], [3.7, 10.9]),
+      wall("high_north", ["high", "round"], [3.7, 10.9], [6.35, 10.9]),
+      wall("low_east", ["low"], [6.35, 7], [6.35, 8.95]),
+      wall("high_east", ["high"], [6.35, 8.95], [6.35, 10.9]),
+    ],
+    doors: [],
+    windows: [],
+  },
+});
+
 /** Two rooms above a corridor with six corners, which goes up between them and a third one. */
 const world = () => ({
   floorplan: {
@@ -64,7 +87,7 @@ function square(corners) {
   return corners.every((p, i) => {
     const [a, b] = [corners.at(i - 1), corners[(i + 1) % corners.length]];
     const [one, two] = [[p.xM - a.xM, p.yM - a.yM], [b.xM - p.xM, b.yM - p.yM]];
-    return Math.abs(one[0] * two[0] + one[1] * two[1]) < 1e-9 && Math.hypot(...one) > 1e-6 && one.every((v) => v === 0 || Math.abs(v) > 1e-6);
+    return Math.abs(one[0] * two[0] + one[1] * two[1]) < 1e-9 && one.filter((v) => Math.abs(v) > 1e-6).length === 1;
   });
 }
 
@@ -107,6 +130,16 @@ for (const [name, wallId, by] of [
     assert.deepEqual(before, world(), "what it was made of stays as it is");
   });
 }
+
+test("a stub beside a wall stays, and no room is left with a slit of floor", () => {
+  for (const by of [-0.6, 0.6]) {
+    const after = walls.withWallMoved(offset(), "low_high", by);
+    for (const one of after.floorplan.rooms) {
+      assert.ok(square(one.polygon.corners) && square(one.netPolygon.corners), `${by}, ${one.roomId}: ${JSON.stringify(one)}`);
+    }
+    for (const id of ["low", "high"]) assert.ok(enclosed(after, after.floorplan.rooms.find((one) => one.roomId === id)), `${by}: walls of ${id}`);
+  }
+});
 
 test("an outer wall is dragged out and in, and the walls beside it go with it", () => {
   for (const [by, more] of [[0.5, 2], [-0.5, -2]]) {

@@ -13,7 +13,6 @@ pub mod digest;
 pub mod error;
 pub mod maker;
 pub mod part;
-mod physics;
 pub mod row;
 pub mod shelf;
 pub mod snapshot;

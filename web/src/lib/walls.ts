@@ -60,7 +60,9 @@ function stripOf(pieces: Wall[], doors: Door[], by: number): Strip {
  * within it. Nothing where a side beside it would have less than no length. `slack` is how far the side may be from the wall's line, m.
  */
 function withSideMoved(outline: P[], strip: Strip, slack: number, inset: number): P[] | undefined {
-  const [low, high] = [strip.from - slack - ONE, strip.to + slack + ONE];
+  // a stub of wall shorter than this gets no corners of its own: it moves with the strip
+  const stub = 2 * slack + ONE;
+  const [low, high] = [strip.from + inset - stub, strip.to - inset + stub];
   const onLine = (p: P) => Math.abs(strip.o(p)) <= slack;
   const span = (p: P, q: P) => [strip.l(p), strip.l(q)].sort((a, b) => a - b);
   const isSide = (p: P, q: P) => onLine(p) && onLine(q) && span(p, q)[0] < strip.to - slack - ONE && span(p, q)[1] > strip.from + slack + ONE;
@@ -74,7 +76,7 @@ function withSideMoved(outline: P[], strip: Strip, slack: number, inset: number)
     found.push(moves ? moved(p) : p);
     if (!isSide(p, q)) continue;
     const [least, most] = span(p, q);
-    const reaches = (cut: number) => cut > least + 2 * slack + ONE && cut < most - 2 * slack - ONE;
+    const reaches = (cut: number) => cut > least + stub && cut < most - stub;
     const cuts = [strip.from + inset, strip.to - inset].map((cut) => ({ cut, enters: cut === strip.from + inset }));
     const ahead = strip.l(q) > strip.l(p);
     for (const { cut, enters } of ahead ? cuts : cuts.reverse()) {
