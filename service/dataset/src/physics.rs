@@ -40,7 +40,8 @@ pub fn measured(_: &Subject<'_>, _: &[&str]) -> Result<BTreeMap<String, f64>, Er
     Ok(BTreeMap::new())
 }
 
-#[cfg(all(test, feature = "physics"))]
+#[cfg(feature = "physics")]
+#[cfg(test)]
 mod tests {
     use std::sync::atomic::AtomicBool;
 

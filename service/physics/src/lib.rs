@@ -103,8 +103,8 @@ pub fn settle(scene: &SimScene) -> Settled {
     let moved = free.iter().filter_map(|(body, object)| {
         let at = world.bodies.get(*body)?.translation();
         let way_m = at.distance(Vector::from_array(object.at_m));
-        // a body that the engine lost is nowhere
-        (!(way_m <= STAYS_M)).then(|| Moved { id: object.id.clone(), way_m })
+        // where the engine lost a body, its way is no number
+        (way_m > STAYS_M || way_m.is_nan()).then(|| Moved { id: object.id.clone(), way_m })
     });
     Settled { bodies: free.len(), moved: moved.collect(), overlaps }
 }
