@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use d3dgen_model::domain::Domain;
+use d3dgen_model::domain::{Domain, Zone};
 use d3dgen_model::scene_graph::{BY_PROMPT, BY_STYLE, Connector, GraphEdge, GraphRoom, Note, Robot, SceneGraph};
 use d3dgen_model::storeys::{LinkKind, VerticalLink};
 
@@ -32,13 +32,14 @@ pub(crate) fn steps<'g>(graph: &'g SceneGraph, domain: &'g Domain) -> impl Itera
     })
 }
 
-/// Returns the graph with one room for all of a kind that are entered through the same room, where they are too many for its walls:
-/// six showers behind one changing room are a room of six.
+/// Returns the graph with one room for all of a kind that serve the room they are entered through, where they are too many for its
+/// walls: six showers behind one changing room are a room of six.
 pub(crate) fn gathered(graph: &SceneGraph, domain: &Domain) -> Option<SceneGraph> {
     let mut out = graph.clone();
     for host in graph.rooms.iter().filter(|r| !r.circulation) {
         let mut kinds: BTreeMap<&str, Vec<&GraphRoom>> = BTreeMap::new();
-        for room in graph.rooms.iter().filter(|r| !r.locked && is_behind(graph, r, host)) {
+        let serves = |r: &GraphRoom| domain.room_type_or_generic(&r.room_type).zone == Zone::Service;
+        for room in graph.rooms.iter().filter(|r| !r.locked && serves(r) && is_behind(graph, r, host)) {
             kinds.entry(&room.room_type).or_default().push(room);
         }
         for rooms in kinds.into_values().filter(|rooms| rooms.len() > MOST_BEHIND) {
