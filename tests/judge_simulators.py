@@ -100,15 +100,24 @@ class Consumer:
         return {"ok": verdict.get("ok", False), "seconds": seconds, "refused": codes["joint_blocked"] + codes["joint_limit"], "moved": codes["drift"] + codes["tilt"], **figures}
 
 
+def kit_python():
+    """The Python of the kit's `world` environment, which has all that its checks import; this one where it is not there."""
+    cache = Path(os.environ.get("SIM_ACCEPT_CACHE") or Path.home() / ".cache/sim-accept")
+    own = cache / "venv/world/bin/python"
+    return own if own.exists() else sys.executable
+
+
 def consumers(kit):
     """The consumers, with the commands that judge a world's folder."""
-    check = lambda name: [sys.executable, kit / name]
+    python = kit_python()
+    check = lambda name: [python, kit / name]
     sweep = {"doorways": "sweep_paths", "doorways_open": "sweep_open"}
     stepped = lambda engine: {"bodies": f"{engine}_dynamic_bodies", "joints": f"{engine}_joints", "drift": f"{engine}_max_drift_m"}
     usd = lambda w, engine: [*check("check_usd.py"), w / "usd/world.usda", "--engine", engine, "--world", w / "usd/manifest.json", "--path", w / "usd/paths.json", "--timeout", 1400]
     mujoco = {"bodies": "settle_free_bodies", "stable": "settle_stable_percent", "joints": "doors", "doors_open": "doors_open_percent", **sweep}
     return [
-        Consumer("MuJoCo", "mujoco", lambda w: [[*check("check_mjcf.py"), w / "mujoco/world.xml", "--settle", "--doors", "--path", w / "mujoco/paths.json"]], mujoco),
+        Consumer("MuJoCo, scenes (MolmoSpaces' rule)", "mujoco", lambda w: [[*check("check_mjcf.py"), w / "mujoco/world.xml", "--settle", "--doors", "--path", w / "mujoco/paths.json"]], mujoco),
+        Consumer("MuJoCo, all joints at once", "mujoco", lambda w: [[*check("check_mjcf.py"), w / "mujoco/world.xml"]], stepped("mujoco")),
         Consumer("Gazebo Fortress (libsdformat, DART)", "gazebo", lambda w: [[*check("check_sdf.py"), w / "gazebo/world.sdf", "--timeout", 1400]], stepped("gazebo")),
         Consumer("OpenUSD and NVIDIA's rules", "usd", lambda w: [usd(w, "none")], sweep),
         Consumer("Newton", "usd", lambda w: [usd(w, "newton")], {**stepped("newton"), **sweep}),
