@@ -3,8 +3,8 @@
 use crate::Collision;
 use crate::affine::Vec3;
 
-/// Most space that a merge may fill that nothing filled, as a share of the box around all shapes, and m3.
-const FILLED: [f64; 2] = [0.02, 0.005];
+/// Most space that a merge may fill that nothing filled, m3.
+const FILLED_M3: f64 = 0.005;
 
 /// Merges shapes as long as `goes_on` says so of their number and of the space, m3, that the next merge fills.
 pub(crate) fn merged(mut shapes: Vec<Collision>, goes_on: impl Fn(usize, f64) -> bool) -> Vec<Collision> {
@@ -19,9 +19,7 @@ pub(crate) fn merged(mut shapes: Vec<Collision>, goes_on: impl Fn(usize, f64) ->
 /// Returns shapes that fill nearly the same space with fewer of them: the feet of a chair are one box, a picture with its frame
 /// another, and what is under a table stays free.
 pub fn few(shapes: Vec<Collision>) -> Vec<Collision> {
-    let around = shapes.iter().map(Collision::bounds).reduce(|a, b| union(&a, &b));
-    let most = around.map_or(0.0, |b| (FILLED[0] * volume(&b)).min(FILLED[1]));
-    merged(shapes, |_, filled| filled <= most)
+    merged(shapes, |_, filled| filled <= FILLED_M3)
 }
 
 /// Returns the two shapes whose common box adds least, the first of several, and the space that it adds, m3.
