@@ -7,7 +7,7 @@ Usage: judge_simulators.py --kit FOLDER [--program d3dgen] [--worlds N | --promp
 The kit is the folder of acceptance checks (check_mjcf.py, check_sdf.py, check_usd.py, check_simready.py, check_glb.mjs,
 check_nav2.py, check_rmf.py), installed by its setup.sh. Worlds are those of PROMPTS in turn of domains, or those of a file with
 a prompt a line, seed by place in the list; or folders of worlds that are there already. --skip leaves out consumers by the start of their titles: `--skip Newton,SimReady`.
-Every figure is what a check printed; nothing is rounded up. Exit status 0 when every world is accepted by every check that ran.
+Every figure is what a check printed; nothing is rounded up. Interrupted, it counts the worlds that were judged whole. Exit status 0 when every world is accepted by every check that ran.
 """
 
 import argparse
@@ -225,6 +225,19 @@ def worlds(given, formats):
         yield folder if made else None, time.monotonic() - begun
 
 
+def judge(world, consumer):
+    """The figures of a world from every command of a consumer, each said as it comes."""
+    for command in consumer.commands(world):
+        verdict, seconds = last_json(command)
+        found = consumer.found(verdict, seconds)
+        if found.get("doorways") is not None:
+            found["reached"], found["rooms"] = rooms_reached(world, verdict)
+        print(f"{world.name} {consumer.title}: {'accepted' if found['ok'] else 'REFUSED'}, {seconds:.0f} s", flush=True)
+        for failure in [] if found["ok"] else verdict.get("failures", [])[:8]:
+            print(f"    {failure['code']}: {failure['message'][:220]}", flush=True)
+        yield found
+
+
 def which(given):
     """How this run is asked for again."""
     if given.made:
@@ -248,25 +261,20 @@ def main():
     left_out = tuple(title for title in given.skip.split(",") if title)
     asked = [c for c in consumers(given.kit) if c.format in formats and not (left_out and c.title.startswith(left_out))]
     results, made, storeys, refused, took = collections.defaultdict(list), 0, 0, 0, []
-    for world, seconds in worlds(given, formats):
-        took.extend([seconds] if seconds is not None else [])
-        if world is None:
-            refused += 1
-            continue
-        made += 1
-        storeys += len(json.loads((world / "world.json").read_text())["floorplan"].get("levels", [])) > 1
-        for consumer in asked:
-            for command in consumer.commands(world):
-                verdict, seconds = last_json(command)
-                found = consumer.found(verdict, seconds)
-                if found.get("doorways") is not None:
-                    found["reached"], found["rooms"] = rooms_reached(world, verdict)
-                results[consumer.title].append(found)
-                print(f"{world.name} {consumer.title}: {'accepted' if found['ok'] else 'REFUSED'}, {seconds:.0f} s", flush=True)
-                if not found["ok"]:
-                    refused += 1
-                    for failure in verdict.get("failures", [])[:8]:
-                        print(f"    {failure['code']}: {failure['message'][:220]}", flush=True)
+    try:
+        for world, seconds in worlds(given, formats):
+            took.extend([seconds] if seconds is not None else [])
+            if world is None:
+                refused += 1
+                continue
+            judged = [(c.title, found) for c in asked for found in judge(world, c)]
+            for title, found in judged:
+                results[title].append(found)
+            made += 1
+            storeys += len(json.loads((world / "world.json").read_text())["floorplan"].get("levels", [])) > 1
+            refused += sum(not found["ok"] for _, found in judged)
+    except KeyboardInterrupt:
+        print("interrupted: the table is of the worlds that were judged whole")
     rows = [row(c.title, results[c.title]) for c in asked if results[c.title]]
     print("\n".join(rows))
     if given.table and rows:

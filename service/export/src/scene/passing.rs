@@ -1,23 +1,28 @@
-//! Which doors and drawers of furniture pass what stands in their way.
+//! Which doors, drawers and lifts of things pass what stands in their way.
 
 use std::collections::BTreeSet;
 
 use d3dgen_mesh::sweep::{Block, swept};
+use d3dgen_mesh::{Joint, JointKind};
 
 use super::{Mobility, SimModel, SimObject, SimPass};
 
-/// How far from where it stands what can be moved may be, m: it rolls a little, and chairs turn.
+/// How far from where it stands what can be moved may be, m: chairs turn, and what has wheels rolls.
 const ASIDE_M: f64 = 0.05;
+const ROLLS_M: f64 = 0.3;
 
-/// Returns the parts of things that stand fast and would be jammed by what can be moved where it stands.
+/// Returns the parts of things that would be jammed by what can be moved where it stands.
 pub(super) fn all(models: &[SimModel], objects: &[SimObject]) -> Vec<SimPass> {
     let mut passes = Vec::new();
-    for (index, object) in objects.iter().enumerate().filter(|(_, o)| o.mobility == Mobility::Fixed) {
+    for (index, object) in objects.iter().enumerate() {
         let Some(model) = models.get(object.model).map(|m| &m.model) else { continue };
         let swept: Vec<(usize, Block)> = model.joints.iter().flat_map(|j| swept(model, j)).collect();
         let swept: Vec<(usize, Block)> =
             swept.into_iter().map(|(body, block)| (body, block.placed(object.at_m, object.yaw_rad))).collect();
-        for (other, moved) in objects.iter().enumerate().filter(|(_, o)| in_reach(object, o)) {
+        if swept.is_empty() {
+            continue;
+        }
+        for (other, moved) in objects.iter().enumerate().filter(|(k, o)| *k != index && in_reach(object, o)) {
             let blocks = blocks(models, moved);
             let met = swept.iter().filter(|(_, own)| blocks.iter().any(|b| own.meets(b))).map(|(body, _)| *body);
             let met: BTreeSet<usize> = met.collect();
@@ -37,11 +42,15 @@ fn in_reach(object: &SimObject, other: &SimObject) -> bool {
 }
 
 fn blocks(models: &[SimModel], object: &SimObject) -> Vec<Block> {
-    let bodies = models.get(object.model).into_iter().flat_map(|m| &m.model.bodies);
-    bodies
-        .flat_map(|b| &b.collisions)
-        .map(|s| Block::around(s).grown(ASIDE_M).placed(object.at_m, object.yaw_rad))
-        .collect()
+    let Some(model) = models.get(object.model).map(|m| &m.model) else { return Vec::new() };
+    let aside = if model.joints.iter().any(rolls) { ROLLS_M } else { ASIDE_M };
+    let shapes = model.bodies.iter().flat_map(|b| &b.collisions);
+    shapes.map(|s| Block::around(s).grown(aside).placed(object.at_m, object.yaw_rad)).collect()
+}
+
+/// Returns true for the axle of a wheel.
+fn rolls(joint: &Joint) -> bool {
+    joint.kind == JointKind::Continuous && joint.axis[2].abs() < 0.5
 }
 
 #[cfg(test)]
@@ -97,5 +106,7 @@ mod tests {
             all(&[desk.clone(), arm.clone()], &objects).len()
         };
         assert_eq!([beside(0.0), beside(0.24), beside(0.4)], [1, 1, 0]);
+        let bed = [object(0, Mobility::Movable, [0.0; 3]), object(1, Mobility::Movable, [0.0, -0.5, 0.0])];
+        assert_eq!(all(&[desk.clone(), arm.clone()], &bed).len(), 1, "what can be moved itself is not jammed either");
     }
 }
