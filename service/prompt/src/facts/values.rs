@@ -154,7 +154,8 @@ pub(super) fn relation_kind(node: &Node) -> Option<RelationKind> {
         "near" | "around" | "together" => "next_to",
         "open" => "open_to",
         "apart" => "away_from",
-        "sight" => "sees",
+        "sight" | "seen" => "sees",
+        "from_only" => "only_from",
         other => other,
     })
 }
