@@ -64,6 +64,8 @@ pub(crate) struct Maker<'a> {
     /// True where the first floor is the ground floor.
     pub first_is_ground: bool,
     pub facts: Vec<Stated>,
+    /// Words of facts that others state: more work of robots that were named before.
+    pub spoken_of: Vec<Range<usize>>,
 }
 
 /// What a room gets from around it.

@@ -82,14 +82,15 @@ impl PromptReader {
         let known = Known::of(&self.registry, domain, building_type);
         let (nodes, applied) = parse(grammar, leaves.into_iter().map(|n| known.as_meant(n)).collect());
         let told = Rc::clone(&known.told_by_a_part);
-        let mut maker = Maker { reading: &reading, known, first_is_ground, facts: Vec::new() };
+        let (facts, spoken_of) = (Vec::new(), Vec::new());
+        let mut maker = Maker { reading: &reading, known, first_is_ground, facts, spoken_of };
         nodes.iter().for_each(|n| {
             maker.add(n);
         });
         let facts = storeys::settled(maker.facts, building.first.as_ref());
         let (facts, named) = homes::named_among(facts);
         let (facts, mut spoken_of) = settled(facts);
-        spoken_of.extend(named);
+        spoken_of.extend(named.into_iter().chain(maker.spoken_of));
         let brief = Brief {
             languages: reading.languages().iter().map(|l| (*l).to_owned()).collect(),
             building: building.first,

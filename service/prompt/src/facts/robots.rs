@@ -90,6 +90,7 @@ impl Maker<'_> {
         let task = self.task(node).filter(|_| somewhere);
         if let (Some(task), Some(robots)) = (task, self.robots_before()) {
             robots.tasks.push(task);
+            self.spoken_of.push(node.tokens.clone());
         }
         for (_, part) in node.fields.iter().filter(|(name, _)| ["what", "from", "to", "at"].contains(&&**name)) {
             self.mention_or_state(part, somewhere);
@@ -101,6 +102,7 @@ impl Maker<'_> {
         let rooms: Vec<Subject> = node.all("item").map(|n| self.subject(n)).collect();
         let Some(robots) = self.robots_before() else { return self.other(node) };
         robots.keep_out.extend(rooms);
+        self.spoken_of.push(node.tokens.clone());
         for room in node.all("item").cloned().collect::<Vec<_>>() {
             self.mention(&room, Around::default());
         }

@@ -20,8 +20,8 @@ impl Maker<'_> {
                 self.say(node, Fact::Rooms(RoomsAsk { room, count, level: around.level(), ..RoomsAsk::default() }));
             }
         }
-        if node.field("suite").is_some() {
-            return;
+        if let Some(suite) = node.field("suite") {
+            return self.inside_suite(node, suite);
         }
         if self.reads_otherwise(node) || self.reads_as_stations(node) {
             return;
@@ -88,6 +88,19 @@ impl Maker<'_> {
         node.all("other").for_each(|n| {
             self.state(n, Around::default());
         });
+    }
+
+    /// States what the rooms of a suite have in them, each in the room that such things stand in.
+    fn inside_suite(&mut self, node: &Node, suite: &Node) {
+        let ids = suite.values("suite").next().unwrap_or_default();
+        let name = self.reading.written(suite.tokens.clone());
+        for inner in node.all("with").chain(node.all("hold")) {
+            let stands = |id: &&str| {
+                inner.field("object").is_some_and(|o| self.known.thing_of(&Subject::known(id, name), o).is_some())
+            };
+            let Some(id) = ids.split('+').find(stands).or(ids.split('+').next()) else { continue };
+            self.inside(inner, &Subject::known(id, name), false);
+        }
     }
 
     /// States what a room that no lexicon has is named for: the machine of a "washing machine room".

@@ -110,7 +110,8 @@ pub(super) fn sides(node: &Node) -> Option<[f64; 2]> {
 pub(super) fn attributes(node: &Node) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     for attribute in node.all("attribute") {
-        let value = attribute.values("attribute").next().map(str::to_owned);
+        // "a freestanding bathtub" stands like a house
+        let value = attribute.values("attribute").chain(attribute.values("site")).next().map(str::to_owned);
         found.extend(value.into_iter().filter(|v| !found.contains(v)).collect::<Vec<_>>());
     }
     found
