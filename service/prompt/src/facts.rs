@@ -371,7 +371,10 @@ impl Maker<'_> {
         });
         for (a, b) in pairs {
             let (a, b) = if seen { (b, a) } else { (a, b) };
-            self.say(node, Fact::Relation(RelationAsk { a, relation: kind, b }));
+            let again = node.field("again").and_then(|r| relation_kind(r));
+            for relation in [Some(kind), again].into_iter().flatten() {
+                self.say(node, Fact::Relation(RelationAsk { a: a.clone(), relation, b: b.clone() }));
+            }
         }
     }
 
