@@ -66,7 +66,7 @@ impl<'a> Asked<'a> {
         let doors = || plan.doors.iter().filter(|d| d.entrance);
         let gap_m = |r: &GraphRoom| {
             let bounds = plan.room(&r.id)?.polygon.bounds();
-            doors().map(|d| bounds.distance_to(d.line.midpoint())).min_by(f64::total_cmp)
+            doors().map(|d| bounds.distance_to(d.line.middle())).min_by(f64::total_cmp)
         };
         let gaps: Vec<f64> = rooms.iter().filter(|r| r.level == 0).filter_map(|r| gap_m(r)).collect();
         let far = gaps.iter().copied().max_by(f64::total_cmp).filter(|_| gaps.len() == rooms.len());
