@@ -10,7 +10,7 @@ use d3dgen_model::scene_graph::GraphRoom;
 use d3dgen_model::world::World;
 
 /// Id of the way into the building, which is no room: the rooms that one enters it through.
-const ENTRANCE: &str = "entrance";
+pub(super) const ENTRANCE: &str = "entrance";
 
 /// How near a room is to one that is asked for by a name, nearest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
