@@ -15,7 +15,7 @@ use super::spec::Brief;
 pub(crate) const MAX_PROPORTION: f64 = 2.4;
 /// A notch in the outline shorter than this is a stagger without a reason, m.
 pub(crate) const MIN_NOTCH_M: f64 = 1.5;
-/// The same of a home, m: a narrow one is a shaft between two rooms.
+/// The same of a home with stairs, m: a narrow one is a shaft between two rooms.
 const MIN_NOTCH_AT_HOME_M: f64 = 2.4;
 
 /// How many times longer than wide a court is at most.
@@ -90,11 +90,11 @@ pub(crate) fn door_need(clear_m: f64) -> i32 {
 
 /// Returns the corridor's width between wall center lines, lattice units.
 pub(crate) fn spine_units(brief: &Brief) -> i32 {
-    // wings and courtyards put outer walls on both sides; the hall of a home has rooms along one at least
-    let walls = OUTER_HALF_M + if brief.for_homes { INNER_HALF_M } else { OUTER_HALF_M };
+    // wings and courtyards put outer walls on both sides; the hall of a home with stairs has rooms along one at least
+    let walls = OUTER_HALF_M + if brief.of_home { INNER_HALF_M } else { OUTER_HALF_M };
     let width = up(brief.spine_width + walls);
     // The entrance door stands in the corridor's end wall, between two corners with outer walls.
-    let upper = brief.upper && !brief.for_homes;
+    let upper = brief.upper && !brief.of_home;
     let entered = brief.spine.is_some_and(|s| brief.rooms[s].entrance) || brief.second_exit || upper;
     let least = if entered { width.max(door_need(brief.entrance_width) + 1) } else { width };
     least + nearest(brief.spine_extra)
@@ -518,7 +518,7 @@ fn fill(task: &mut Task<'_, '_>, row: &Row<'_>, len: i32) {
     let gap = meters(len - total);
     if gap > 0.0 {
         task.layout.notch += gap;
-        let least = if task.brief.for_homes { MIN_NOTCH_AT_HOME_M } else { MIN_NOTCH_M };
+        let least = if task.brief.of_home { MIN_NOTCH_AT_HOME_M } else { MIN_NOTCH_M };
         if gap < least {
             task.misfit += gap.min(least - gap).max(0.05);
         }
