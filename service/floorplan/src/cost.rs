@@ -49,8 +49,8 @@ const DARK_HALL_M: f64 = 6.0;
 const DARK_HALL: f64 = 0.03;
 /// Share of the walls of a corridor behind which there is no room, beside its ends, from which on it serves one side only; and
 /// what more of it counts as share of circulation.
-const ONE_SIDED_FROM: f64 = 0.1;
-const ONE_SIDED: f64 = 0.7;
+const ONE_SIDED_FROM: f64 = 0.12;
+const ONE_SIDED: f64 = 0.45;
 /// What a meter of a corridor that is too long for its one way out counts as share of circulation.
 const ONE_WAY: f64 = 0.1;
 /// What a room that is wanted near the entrance loses by each side of the building that it is away from it.
