@@ -67,7 +67,7 @@ const KNOWN_BY: [(&str, &str, &str); 42] = [
     ("tattoo studio with three cabins", "tattoo_cabin", "massage_table"),
     ("bookshop with a reading corner for children", "book_shop", "double_bookshelf"),
     ("palestra di arrampicata con area boulder", "climbing_area", "climbing_wall"),
-    ("Boulderhalle mit Umkleiden und Café", "climbing_area", "bouldering_wall"),
+    ("Boulderhalle mit Umkleiden und Café", "bouldering_area", "bouldering_wall"),
     ("casa de leilões com sala de leilões e dois escritórios", "saleroom", "auction_rostrum"),
     ("agência dos correios com triagem e cais de carga", "mail_sorting_room", "sorting_frame"),
     ("паромный терминал с залом ожидания", "boarding_gate", "ticket_gate"),
