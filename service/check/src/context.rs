@@ -15,6 +15,8 @@ use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::world::World;
 use d3dgen_model::{Point, Rect, Segment};
 
+use crate::outline::Outline;
+
 /// How far a line may lie from the boundary it stands for, m.
 pub const ON_LINE_M: f64 = 0.02;
 
@@ -52,7 +54,10 @@ pub struct Room<'a> {
 pub struct Object<'a> {
     pub placement: &'a Placement,
     pub kind: Option<&'a ObjectType>,
+    /// Rectangle along the walls around its outline.
     pub rect: Rect,
+    /// Its outline, at the angle it stands.
+    pub outline: Outline,
     /// Higher than floor covering.
     pub solid: bool,
     /// In the way of a robot or a person's legs.
@@ -71,12 +76,16 @@ impl<'a> Context<'a> {
             doors: plan.doors_of(&room.room_id).collect(),
         };
         let kinds = domain.objects_by_id();
-        let object = |p: &'a Placement| Object {
-            placement: p,
-            kind: kinds.get(p.object.as_str()).copied(),
-            rect: p.footprint().bounds(),
-            solid: p.size_m[2] > FLAT_M,
-            blocks: stops_robot(p),
+        let object = |p: &'a Placement| {
+            let outline = Outline::of(p);
+            Object {
+                placement: p,
+                kind: kinds.get(p.object.as_str()).copied(),
+                rect: outline.bounds,
+                outline,
+                solid: p.size_m[2] > FLAT_M,
+                blocks: stops_robot(p),
+            }
         };
         let mut index: BTreeMap<&str, (usize, Vec<usize>)> = BTreeMap::new();
         for (i, room) in plan.rooms.iter().enumerate() {

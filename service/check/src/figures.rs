@@ -20,7 +20,7 @@ pub fn measure(c: &Context, storeys: &[Context]) -> BTreeMap<String, f64> {
     };
     let rooms = c.rooms.iter().filter(|r| !r.plan.circulation).count() as f64;
     let taken: f64 =
-        c.objects.iter().filter(|o| o.blocks && o.placement.support.is_none()).map(|o| o.rect.area()).sum();
+        c.objects.iter().filter(|o| o.blocks && o.placement.support.is_none()).map(|o| o.outline.area()).sum();
     let kinds: BTreeSet<&str> = c.objects.iter().map(|o| o.placement.object.as_str()).collect();
     let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
     let l_shaped = c.rooms.iter().filter(|r| r.plan.polygon.corners().len() > 4).count() as f64;

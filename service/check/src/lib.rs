@@ -9,6 +9,7 @@ mod check;
 mod context;
 mod figures;
 mod fit;
+mod outline;
 pub mod rules;
 
 pub use answers::answers;

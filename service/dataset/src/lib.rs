@@ -22,5 +22,6 @@ pub mod verify;
 
 mod held_out;
 mod pack;
+mod physics;
 
 pub use error::Error;

@@ -1,7 +1,6 @@
 //! One world of a task: made, filtered, packed. A pure function of task, spec and snapshot.
 
 use std::collections::BTreeMap;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -14,8 +13,9 @@ use d3dgen_model::report::{Report, Status};
 use d3dgen_model::scene_graph::SceneGraph;
 use d3dgen_model::seed::Stream;
 use d3dgen_model::world::World;
-use d3dgen_pipeline::generate::{Generated, Settings, contradictions, furnish_and_check, plugin_of, retrieve};
+use d3dgen_pipeline::generate::{Generated, plugin_of, retrieve};
 use d3dgen_pipeline::scene_graph::Request;
+use d3dgen_pipeline::task::{self, Terms, caught};
 use d3dgen_pipeline::{Error as StageError, brief, floorplan, placement, scenario, world};
 use d3dgen_plugins::Registry;
 
@@ -23,6 +23,7 @@ use crate::digest::{of_members, sha256};
 use crate::error::Error;
 use crate::held_out;
 use crate::pack::gzip;
+use crate::physics;
 use crate::row::{Failure, Row, Why};
 use crate::snapshot::Snapshot;
 use crate::spec::{Filter, Spec, StageName};
@@ -66,6 +67,8 @@ pub struct Maker<'a> {
     kept: Kept<'a>,
     snapshot_sha256: String,
     evaluated: Vec<&'static str>,
+    /// Measures that a physics engine takes.
+    stepped: Vec<&'static str>,
 }
 
 /// The models of the asset database.
@@ -110,8 +113,9 @@ impl<'a> Maker<'a> {
         let registry = snapshot.registry()?;
         let without_held_out =
             spec.splits.by_asset().then(|| held_out::without(&registry, spec.splits.held_out_assets));
-        let (snapshot_sha256, evaluated) = (snapshot.digest().to_owned(), spec.evaluated());
-        Ok(Self { spec: spec.clone(), registry, without_held_out, kept, snapshot_sha256, evaluated })
+        let snapshot_sha256 = snapshot.digest().to_owned();
+        let (evaluated, stepped) = (spec.evaluated(), spec.stepped());
+        Ok(Self { spec: spec.clone(), registry, without_held_out, kept, snapshot_sha256, evaluated, stepped })
     }
 
     /// Returns a place for one thread.
@@ -132,22 +136,12 @@ impl Bench<'_> {
     /// # Errors
     /// `Interrupted`; `Export` when a format cannot be written.
     pub fn make(&mut self, task: &Task<'_>, cancelled: &AtomicBool) -> Result<Outcome, Error> {
-        let made = catch_unwind(AssertUnwindSafe(|| self.made(task, cancelled)));
-        made.unwrap_or_else(|panic| {
-            self.plan = None;
-            let said =
-                panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
-            Ok(Outcome::Nothing(Failure::of(task, Why::Crashed, said.unwrap_or("panicked").trim())))
-        })
-    }
-
-    fn made(&mut self, task: &Task<'_>, cancelled: &AtomicBool) -> Result<Outcome, Error> {
-        match self.attempt(task, cancelled) {
-            Ok(made) => Ok(made),
-            Err(Stopped::Task(StageError::Cancelled)) => Err(Error::Interrupted),
-            Err(Stopped::Task(error)) => {
-                let why = if matches!(error, StageError::Infeasible { .. }) { Why::Infeasible } else { Why::Refused };
-                Ok(Outcome::Nothing(Failure::of(task, why, error.to_string())))
+        let made = caught(|| self.attempt(task, cancelled)).unwrap_or_else(|crash| Err(Stopped::Task(crash)));
+        match made {
+            Ok(outcome) => Ok(outcome),
+            Err(Stopped::Task(failure)) => {
+                self.plan = self.plan.take().filter(|_| failure.why != task::Why::Crashed);
+                Ok(Outcome::Nothing(Failure::of(task, failure.why.into(), failure.reason)))
             }
             Err(Stopped::Run(error)) => Err(error),
         }
@@ -162,14 +156,8 @@ impl Bench<'_> {
         }
         let asked = (format!("{:?}", task.prompt.request), task.seed);
         if self.plan.as_ref().is_none_or(|(of, _)| *of != asked) {
-            let (graph, brief) = brief::rooms(&request, registry)?;
-            let messages = contradictions(&graph);
-            if !spec.allow_conflicts && !messages.is_empty() {
-                let reason = format!("the prompt contradicts itself: {}", messages.join("; "));
-                return Ok(Outcome::Nothing(Failure::of(task, Why::Refused, reason)));
-            }
-            let settings = Settings { name: Some(WORLD_NAME.into()), brief, ..Settings::default() };
-            let made = furnish_and_check(&graph, registry, &settings, &mut |_| (), cancelled)?;
+            let terms = Terms { name: Some(WORLD_NAME), allow_conflicts: spec.allow_conflicts };
+            let made = task::make(&request, registry, terms, cancelled)?.map_err(Stopped::Task)?;
             self.plan = Some((asked, made));
         }
         let (_, first) = self.plan.as_ref().expect("it was just made");
@@ -183,13 +171,16 @@ impl Bench<'_> {
 
 /// Why an attempt ended: because of its task, or because nothing can go on.
 enum Stopped {
-    Task(StageError),
+    Task(task::Failure),
     Run(Error),
 }
 
 impl From<StageError> for Stopped {
     fn from(error: StageError) -> Self {
-        Self::Task(error)
+        match error {
+            StageError::Cancelled => Self::Run(Error::Interrupted),
+            error => Self::Task(task::Failure::of(&error)),
+        }
     }
 }
 
@@ -281,14 +272,15 @@ impl Maker<'_> {
             let reason = broken.map_or_else(String::new, |v| format!("{}: {}", v.code, v.message));
             return Ok(Outcome::Nothing(Failure::of(task, Why::Unsound, reason)));
         }
-        let mut row = Row::of_world(task, world, report, *attempts);
-        self.measure(world, report, &mut row.figures);
-        if let Some(reason) = self.spec.filters.iter().find_map(|f| refused(f, &row, report)) {
-            return Ok(Outcome::Nothing(Failure::of(task, Why::Filtered, reason)));
-        }
         let plugin = registry.get(&world.scene_graph.domain);
         let domain = plugin.map(|p| p.domain()).expect("the world was made of this domain");
         let subject = Subject::new(world, domain, self.kept.models());
+        let mut row = Row::of_world(task, world, report, *attempts);
+        self.measure(world, report, &mut row.figures);
+        row.figures.extend(physics::measured(&subject, &self.stepped)?);
+        if let Some(reason) = self.spec.filters.iter().find_map(|f| refused(f, &row, report)) {
+            return Ok(Outcome::Nothing(Failure::of(task, Why::Filtered, reason)));
+        }
         let mut files = self.documents(world, report);
         for format in &self.spec.formats {
             let exported = exported(format, &subject)?;

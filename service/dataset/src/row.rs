@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use d3dgen_model::report::{Fate, Report, Status};
 use d3dgen_model::scene_graph::{Robot, SceneGraph};
 use d3dgen_model::world::World;
+use d3dgen_pipeline::task;
 use serde::{Deserialize, Serialize};
 
 use crate::tasks::Task;
@@ -138,6 +139,16 @@ pub enum Why {
     Filtered,
     /// The program has a fault here.
     Crashed,
+}
+
+impl From<task::Why> for Why {
+    fn from(why: task::Why) -> Self {
+        match why {
+            task::Why::Refused => Self::Refused,
+            task::Why::Infeasible => Self::Infeasible,
+            task::Why::Crashed => Self::Crashed,
+        }
+    }
 }
 
 impl Why {

@@ -11,6 +11,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
+use crate::physics;
 
 /// Most worlds a data set has: more is several data sets.
 const MAX_TASKS: u64 = 10_000_000;
@@ -260,9 +261,19 @@ impl Spec {
 
     /// Returns the names of the measures of `d3dgen eval` that are needed, in its order.
     pub fn evaluated(&self) -> Vec<&'static str> {
-        let filtered = |name: &str| self.filters.iter().any(|f| f.measure.as_deref() == Some(name));
-        let asked = |name: &str| self.measures.iter().any(|m| m == "all" || m == name) || filtered(name);
+        let asked = |name: &str| self.measures.iter().any(|m| m == "all") || self.wants(name);
         d3dgen_eval::figures::FIGURES.iter().map(|f| f.name).filter(|name| asked(name)).collect()
+    }
+
+    /// Returns the names of the measures that a physics engine takes and that are needed: only those that are named.
+    pub fn stepped(&self) -> Vec<&'static str> {
+        physics::MEASURES.iter().copied().filter(|name| self.wants(name)).collect()
+    }
+
+    /// Returns true for a measure that becomes a column or that a filter goes by.
+    fn wants(&self, measure: &str) -> bool {
+        let filtered = self.filters.iter().any(|f| f.measure.as_deref() == Some(measure));
+        filtered || self.measures.iter().any(|m| m == measure)
     }
 }
 
@@ -359,7 +370,12 @@ fn check_names(spec: &Spec, problems: &mut Vec<Problem>) {
     if !spec.formats.is_empty() && spec.last_stage() != StageName::World {
         problems.push(Problem::new("/formats", "are files of worlds: they need \"world\" in stages"));
     }
-    let measures: Vec<&str> = d3dgen_eval::figures::FIGURES.iter().map(|f| f.name).collect();
+    if !physics::HERE && !spec.stepped().is_empty() {
+        let message = format!("{} needs a program built with `--features physics`", spec.stepped().join(", "));
+        problems.push(Problem::new("/measures", message));
+    }
+    let evaluated = d3dgen_eval::figures::FIGURES.iter().map(|f| f.name);
+    let measures: Vec<&str> = evaluated.chain(physics::MEASURES.iter().copied()).collect();
     for (i, measure) in spec.measures.iter().enumerate() {
         if measure != "all" && !measures.contains(&measure.as_str()) {
             let message = format!("`{measure}` is not known; there are all, {}", measures.join(", "));

@@ -1,9 +1,13 @@
-//! Objects as upright boxes turned about the vertical, and the floor and walls they stand on and at: exact geometry.
+//! Objects as upright boxes turned about the vertical, and the floor and walls they stand on and at.
 
 use d3dgen_model::floorplan::{Door, Floorplan, PlanRoom};
 use d3dgen_model::placements::Placement;
 use d3dgen_model::world::World;
 use d3dgen_model::{Point, Rect, Segment};
+use geo::{Area, BooleanOps};
+use parry2d::math::{Pose, Vector};
+use parry2d::query::{self, PointQuery};
+use parry2d::shape::Cuboid;
 
 /// Things on the floor that are no higher than this can be walked and stood on, m.
 pub const COVERING_M: f64 = 0.03;
@@ -23,19 +27,19 @@ pub struct Solid<'a> {
     pub z0: f64,
     /// Height of the top, m.
     pub z1: f64,
-    /// Unit vector of the front.
-    front: (f64, f64),
+    /// Where the outline lies, x along its front.
+    at: Pose,
+    /// The outline, in its own frame.
+    outline: Cuboid,
 }
 
 impl<'a> Solid<'a> {
     /// Returns the box of an object.
     pub fn new(placement: &'a Placement) -> Self {
-        let (sin, cos) = placement.pose.yaw_rad.sin_cos();
-        let center = Point::new(placement.pose.x, placement.pose.y);
         let [width, depth, height] = placement.size_m;
-        let at = |f: f64, l: f64| Point::new(center.x + cos * f - sin * l, center.y + sin * f + cos * l);
         let (f, l) = (depth / 2.0, width / 2.0);
-        let quad = [at(-f, -l), at(f, -l), at(f, l), at(-f, l)];
+        let at = Pose::new(vector(Point::new(placement.pose.x, placement.pose.y)), placement.pose.yaw_rad);
+        let quad = [(-f, -l), (f, -l), (f, l), (-f, l)].map(|(x, y)| point(at.transform_point(Vector::new(x, y))));
         let mut bounds = Rect { x0: quad[0].x, y0: quad[0].y, x1: quad[0].x, y1: quad[0].y };
         for p in &quad {
             bounds.x0 = bounds.x0.min(p.x);
@@ -44,7 +48,8 @@ impl<'a> Solid<'a> {
             bounds.y1 = bounds.y1.max(p.y);
         }
         let z0 = placement.pose.z;
-        Self { placement, center, quad, bounds, z0, z1: z0 + height, front: (cos, sin) }
+        let center = Point::new(placement.pose.x, placement.pose.y);
+        Self { placement, center, quad, bounds, z0, z1: z0 + height, at, outline: Cuboid::new(Vector::new(f, l)) }
     }
 
     /// Returns true for rugs, mats and the like.
@@ -54,25 +59,17 @@ impl<'a> Solid<'a> {
 
     /// Returns a point of the own frame (forward, left) on the plan.
     pub fn at(&self, forward: f64, left: f64) -> Point {
-        let (cos, sin) = self.front;
-        Point::new(self.center.x + cos * forward - sin * left, self.center.y + sin * forward + cos * left)
+        point(self.at.transform_point(Vector::new(forward, left)))
     }
 
     /// Returns true when the point lies in the outline or no further than `margin` outside it, m.
     pub fn covers(&self, p: Point, margin: f64) -> bool {
-        let (dx, dy) = (p.x - self.center.x, p.y - self.center.y);
-        let (cos, sin) = self.front;
-        let [width, depth, _] = self.placement.size_m;
-        (dx * cos + dy * sin).abs() <= depth / 2.0 + margin && (dy * cos - dx * sin).abs() <= width / 2.0 + margin
+        self.distance(p) <= margin
     }
 
     /// Returns the distance of a point from the outline, m; 0 inside.
     pub fn distance(&self, p: Point) -> f64 {
-        let (dx, dy) = (p.x - self.center.x, p.y - self.center.y);
-        let (cos, sin) = self.front;
-        let [width, depth, _] = self.placement.size_m;
-        let beyond = |along: f64, half: f64| (along.abs() - half).max(0.0);
-        beyond(dx * cos + dy * sin, depth / 2.0).hypot(beyond(dy * cos - dx * sin, width / 2.0))
+        self.outline.distance_to_point(&self.at, vector(p), true)
     }
 
     /// Returns how far one would have to be moved to be clear of the other, m; zero or less when they do not overlap.
@@ -81,8 +78,15 @@ impl<'a> Solid<'a> {
         if vertical <= 0.0 || !self.bounds.overlaps(&other.bounds) {
             return vertical.min(0.0);
         }
-        let axes = [self.front, (-self.front.1, self.front.0), other.front, (-other.front.1, other.front.0)];
-        axes.iter().map(|axis| overlap(&self.quad, &other.quad, *axis)).fold(vertical, f64::min)
+        let contact = query::contact(&self.at, &self.outline, &other.at, &other.outline, 0.0);
+        contact.ok().flatten().map_or(0.0, |c| vertical.min(-c.dist))
+    }
+
+    /// Returns the area of the outline in a rectangle, m^2.
+    pub fn area_inside(&self, rect: &Rect) -> f64 {
+        let outline = geo::Polygon::new(self.quad.iter().map(|p| (p.x, p.y)).collect::<Vec<_>>().into(), Vec::new());
+        let rect = geo::Rect::new((rect.x0, rect.y0), (rect.x1, rect.y1)).to_polygon();
+        outline.intersection(&rect).unsigned_area()
     }
 
     /// Returns evenly spaced points of the outline, `n` by `n`, the outermost a millimeter inside.
@@ -96,44 +100,13 @@ impl<'a> Solid<'a> {
     }
 }
 
-fn overlap(a: &[Point], b: &[Point], (x, y): (f64, f64)) -> f64 {
-    let reach = |quad: &[Point]| {
-        quad.iter().map(|p| p.x * x + p.y * y).fold((f64::MAX, f64::MIN), |(lo, hi), v| (lo.min(v), hi.max(v)))
-    };
-    let ((a0, a1), (b0, b1)) = (reach(a), reach(b));
-    a1.min(b1) - a0.max(b0)
+/// Returns a point as parry has it.
+pub fn vector(p: Point) -> Vector {
+    Vector::new(p.x, p.y)
 }
 
-/// Returns the area of a convex polygon inside a rectangle, m^2 (Sutherland and Hodgman's clipping).
-pub fn area_inside(polygon: &[Point], rect: &Rect) -> f64 {
-    type Inside = fn(&Point, &Rect) -> f64;
-    const EDGES: [Inside; 4] = [|p, r| p.x - r.x0, |p, r| r.x1 - p.x, |p, r| p.y - r.y0, |p, r| r.y1 - p.y];
-    let mut points = polygon.to_vec();
-    for inside in EDGES {
-        let mut kept = Vec::with_capacity(points.len() + 2);
-        for (i, p) in points.iter().enumerate() {
-            let q = points[(i + 1) % points.len()];
-            let (a, b) = (inside(p, rect), inside(&q, rect));
-            if a >= 0.0 {
-                kept.push(*p);
-            }
-            if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
-                let t = a / (a - b);
-                kept.push(Point::new(p.x + t * (q.x - p.x), p.y + t * (q.y - p.y)));
-            }
-        }
-        points = kept;
-    }
-    shoelace(&points).abs()
-}
-
-/// Returns the signed area of a polygon by the shoelace formula, m^2.
-pub fn shoelace(points: &[Point]) -> f64 {
-    let turn = |(i, p): (usize, &Point)| {
-        let q = points[(i + 1) % points.len()];
-        p.x * q.y - q.x * p.y
-    };
-    points.iter().enumerate().map(turn).sum::<f64>() / 2.0
+fn point(v: Vector) -> Point {
+    Point::new(v.x, v.y)
 }
 
 /// Returns a strip along a line, `half` wide to each side, as long as the line.
@@ -220,12 +193,12 @@ mod tests {
     }
 
     #[test]
-    fn clipped_areas_are_exact() {
+    fn areas_in_rectangles_are_those_of_the_outline() {
         let mut p = sample::thing("a", (0.0, 0.0), [2.0, 2.0, 1.0]);
         let right = Rect::new(0.0, -5.0, 5.0, 5.0);
-        assert!((area_inside(&Solid::new(&p).quad, &right) - 2.0).abs() < 1e-9);
+        assert!((Solid::new(&p).area_inside(&right) - 2.0).abs() < 1e-6);
         p.pose.yaw_rad = std::f64::consts::FRAC_PI_4;
-        assert!((area_inside(&Solid::new(&p).quad, &right) - 2.0).abs() < 1e-9);
-        assert_eq!(area_inside(&Solid::new(&p).quad, &Rect::new(3.0, 3.0, 4.0, 4.0)), 0.0);
+        assert!((Solid::new(&p).area_inside(&right) - 2.0).abs() < 1e-6);
+        assert_eq!(Solid::new(&p).area_inside(&Rect::new(3.0, 3.0, 4.0, 4.0)), 0.0);
     }
 }

@@ -1,5 +1,5 @@
 //! The stages from prompt to checked world, in a row: `generate` drives them, `edit` changes what they made, `bring` begins
-//! with a plan that somebody has, `variations` makes several of one request.
+//! with a plan that somebody has, `variations` makes several of one request, `task` one of a run of many.
 //!
 //! Each stage is a crate of its own that knows none of the others; here they are under the names they have everywhere. Stages
 //! take values and return documents; they read no file, clock or environment.
@@ -13,6 +13,7 @@ pub mod generate;
 mod give_way;
 mod grow;
 mod mend;
+pub mod task;
 pub mod variations;
 mod ways_out;
 

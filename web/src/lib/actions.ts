@@ -67,15 +67,19 @@ export async function swap(object = "", asset = "") {
 
 /** Sets selected objects in a row with the first one. */
 export async function align(axis: "x" | "y") {
+  const now = world();
   const [first, ...rest] = objects();
-  const anchor = objectOf(world(), first ?? "")?.pose;
+  const anchor = objectOf(now, first ?? "")?.pose;
+  if (!now || !anchor) return;
+  let aligned = now;
   const edits = rest.flatMap((id): EditInit[] => {
-    const pose = objectOf(world(), id)?.pose;
-    if (!pose || !anchor) return [];
-    const value = { placementId: id, xM: axis === "x" ? anchor.xM : pose.xM, yM: axis === "y" ? anchor.yM : pose.yM };
-    return [{ case: "movedObject", value }];
+    const pose = objectOf(now, id)?.pose;
+    if (!pose) return [];
+    const by = { x: axis === "x" ? anchor.xM - pose.xM : 0, y: axis === "y" ? anchor.yM - pose.yM : 0 };
+    aligned = withMoved(aligned, [id], by);
+    return [{ case: "movedObject", value: { placementId: id, xM: pose.xM + by.x, yM: pose.yM + by.y } }];
   });
-  if (edits.length > 0) await session.edit(edits, t("did.aligned"));
+  if (edits.length > 0) await session.edit(edits, t("did.aligned"), aligned);
 }
 
 /** Hangs the selected door at its other side, or has it open into the room on its other side. */

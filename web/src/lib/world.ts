@@ -1,11 +1,11 @@
 /** Questions about a world, and worlds with one thing changed; a world itself is never changed. */
-import type { Door, Floorplan, PlanRoom, Segment, Wall, Window } from "../gen/d3dgen/v1/floorplan_pb";
+import type { Door, PlanRoom, Segment, Wall, Window } from "../gen/d3dgen/v1/floorplan_pb";
 import type { Placement } from "../gen/d3dgen/v1/placements_pb";
 import type { Violation } from "../gen/d3dgen/v1/report_pb";
 import type { World } from "../gen/d3dgen/v1/world_pb";
 import { names } from "./names.svelte";
 import { figure, t, unitSaid } from "./texts.svelte";
-import { areaOf, corners, ends, footprint, inside, type P, point, tidy } from "./geometry";
+import { corners, ends, footprint, inside, type P, tidy } from "./geometry";
 
 /** What lies on one storey. */
 export interface Storey {
@@ -120,83 +120,6 @@ export function without(world: World, ids: string[]): World {
   const placements = world.placements;
   if (!placements) return world;
   return { ...world, placements: { ...placements, placements: placements.placements.filter((p) => !gone.has(p.placementId)) } };
-}
-
-/** Returns all pieces of the wall that a piece belongs to: those on its line that part the same two sides. */
-export function wallPieces(plan: Floorplan, wallId: string): Wall[] {
-  const piece = plan.walls.find((w) => w.wallId === wallId);
-  if (!piece) return [];
-  const { a, across } = ends(piece.line);
-  const rooms = [...piece.roomIds].sort().join();
-  const off = (p: P) => Math.abs((p.x - a.x) * across.x + (p.y - a.y) * across.y);
-  return plan.walls.filter((w) => {
-    const line = ends(w.line);
-    return [...w.roomIds].sort().join() === rooms && off(line.a) < 1e-3 && off(line.b) < 1e-3;
-  });
-}
-
-/** Returns the world with a wall moved across its line, the rooms at its sides with it, and nothing else repaired. */
-export function withWallMoved(world: World, wallId: string, by: number): World {
-  const plan = world.floorplan;
-  const pieces = plan ? wallPieces(plan, wallId) : [];
-  if (!plan || pieces.length === 0) return world;
-  const { a, along, across } = ends(pieces[0].line);
-  const sides = new Set(pieces[0].roomIds);
-  // towards east or north, as WallMove counts
-  const sign = across.x + across.y > 0 ? 1 : -1;
-  const shift = { x: across.x * by * sign, y: across.y * by * sign };
-  const spots = pieces.flatMap((w) => [point(w.line?.start), point(w.line?.end)]);
-  const doors = plan.doors.filter((d) => [...d.roomIds].sort().join() === [...sides].sort().join());
-  for (const door of doors) spots.push(point(door.line?.start), point(door.line?.end));
-  const along1 = spots.map((p) => (p.x - a.x) * along.x + (p.y - a.y) * along.y);
-  const [from, to] = [Math.min(...along1), Math.max(...along1)];
-  const margin = Math.max(...pieces.map((w) => w.thicknessM)) / 2 + 0.01;
-  const touches = (p: P, slack: number) => {
-    const l = (p.x - a.x) * along.x + (p.y - a.y) * along.y;
-    const off = Math.abs((p.x - a.x) * across.x + (p.y - a.y) * across.y);
-    return off <= slack && l >= from - margin && l <= to + margin;
-  };
-  const at = (p: { xM: number; yM: number }, slack: number) =>
-    touches({ x: p.xM, y: p.yM }, slack) ? { ...p, xM: tidy(p.xM + shift.x), yM: tidy(p.yM + shift.y) } : p;
-  const outline = <T extends { corners: { xM: number; yM: number }[] }>(o: T | undefined, slack: number) =>
-    o && { ...o, corners: o.corners.map((p) => at(p, slack)) };
-  const line = (l: Segment | undefined) =>
-    l && { ...l, start: l.start && at(l.start, 1e-3), end: l.end && at(l.end, 1e-3) };
-  const rooms = plan.rooms.map((room) => {
-    if (!sides.has(room.roomId)) return room;
-    const net = outline(room.netPolygon, margin) as PlanRoom["netPolygon"];
-    const polygon = outline(room.polygon, 1e-3) as PlanRoom["polygon"];
-    return { ...room, polygon, netPolygon: net, netAreaM2: tidy(areaOf(corners(net))) };
-  });
-  const near = (roomIds: string[]) => roomIds.some((id) => sides.has(id));
-  const middle = { x: (spots[0].x + spots[1].x) / 2, y: (spots[0].y + spots[1].y) / 2 };
-  const ahead = { x: middle.x + Math.sign(shift.x) * 0.2, y: middle.y + Math.sign(shift.y) * 0.2 };
-  const shrinks = [...sides].find((id) => inside(corners(roomOf(world, id)?.polygon), ahead));
-  const grows = [...sides].find((id) => id !== shrinks);
-  const moving = new Set(pieces.map((w) => w.wallId));
-  const walls = plan.walls.flatMap((wall): Wall[] => {
-    if (moving.has(wall.wallId)) return [{ ...wall, line: line(wall.line) as Segment }];
-    const meets = [wall.line?.start, wall.line?.end].find((p) => touches(point(p), 1e-3));
-    const isSide = wall.roomIds.includes(shrinks ?? grows ?? "");
-    if (!meets || !isSide) return [wall];
-    const rest = { ...wall, line: line(wall.line) as Segment };
-    if (!shrinks) return [rest]; // outwards: the walls at its sides grow with it
-    // what parted the room that shrinks from a third one now parts the room that grows from it
-    const roomIds = wall.roomIds.flatMap((id) => (id !== shrinks ? [id] : grows ? [grows] : []));
-    if (roomIds.length === 0) return [rest];
-    const strip = { ...(wall.line as Segment), start: meets, end: at(meets, 1e-3) } as Segment;
-    return [rest, { ...wall, wallId: `${wall.wallId}_strip`, roomIds, exterior: roomIds.length < 2, line: strip }];
-  });
-  return {
-    ...world,
-    floorplan: {
-      ...plan,
-      rooms,
-      walls,
-      doors: plan.doors.map((d) => (near(d.roomIds) ? { ...d, line: line(d.line) as Segment } : d)),
-      windows: plan.windows.map((w) => (sides.has(w.roomId) ? { ...w, line: line(w.line) as Segment } : w)),
-    },
-  };
 }
 
 /** Returns the world with a door moved along its wall, whose pieces beside it give and take; nothing where it cannot go so far. */

@@ -4,7 +4,8 @@ import type { World } from "../gen/d3dgen/v1/world_pb";
 import { areaOf, boundsOf, corners, ends, footprint, inside, onStep, type P, reach, STEP, tidy } from "../lib/geometry";
 import type { EditInit } from "../lib/session.svelte";
 import { t } from "../lib/texts.svelte";
-import { nameOf, objectOf, roomOf, snapLines, withDoorMoved, withMoved, withWallMoved, withWindowMoved } from "../lib/world";
+import { withWallMoved } from "../lib/walls";
+import { nameOf, objectOf, roomOf, snapLines, withDoorMoved, withMoved, withWindowMoved } from "../lib/world";
 
 /** A wall stops before a room has less floor than this, m2. */
 const LEAST = 0.3;
@@ -112,7 +113,7 @@ export function ofWall(world: World, wallId: string): Drag {
       if (go === 0) return undefined;
       const moved = withWallMoved(world, wallId, go);
       const sides = walls.find((w) => w.wallId === wallId)?.roomIds ?? [];
-      if (!leaves(moved, sides)) return last;
+      if (!moved || !leaves(moved, sides)) return last;
       const guides: Guide[] = snapped ? [upright ? { x: snapped.line } : { y: snapped.line }] : [];
       const dimensions = sides.flatMap((id): Dimension[] => {
         const net = corners(roomOf(moved, id)?.netPolygon);

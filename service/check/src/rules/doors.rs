@@ -7,6 +7,7 @@ use d3dgen_model::{Rect, Segment, TOLERANCE_M};
 
 use super::Findings;
 use crate::context::{Context, ON_LINE_M, Room, shared, uncovered};
+use crate::outline::Outline;
 
 /// Narrowest opening, m.
 const NARROWEST_M: f64 = 0.60;
@@ -156,7 +157,7 @@ pub fn blocked(c: &Context, out: &mut Findings) {
         out.look();
         let lane = sides(door, DOOR_LANE_M, 0.0);
         for object in c.objects.iter().filter(|o| o.blocks) {
-            if lane.iter().map(|l| within_rooms(c, door, l, &object.rect)).sum::<f64>() > GRAZE_M2 {
+            if lane.iter().map(|l| within_rooms(c, door, l, &object.outline)).sum::<f64>() > GRAZE_M2 {
                 let id = &object.placement.placement_id;
                 out.add(format!("{}|{id}", door.door_id), format!("`{id}` stands in front of the door"));
             }
@@ -165,18 +166,19 @@ pub fn blocked(c: &Context, out: &mut Findings) {
 }
 
 /// Returns the area that an obstacle takes from a lane, counted within the rooms the door joins, m^2.
-fn within_rooms(c: &Context, door: &Door, lane: &Rect, obstacle: &Rect) -> f64 {
-    if lane.common_area(obstacle) <= 0.0 {
+fn within_rooms(c: &Context, door: &Door, lane: &Rect, obstacle: &Outline) -> f64 {
+    if lane.common_area(&obstacle.bounds) <= 0.0 {
         return 0.0;
     }
-    let cut = Rect {
-        x0: lane.x0.max(obstacle.x0),
-        y0: lane.y0.max(obstacle.y0),
-        x1: lane.x1.min(obstacle.x1),
-        y1: lane.y1.min(obstacle.y1),
+    let cut = |room: &Rect| Rect {
+        x0: lane.x0.max(room.x0),
+        y0: lane.y0.max(room.y0),
+        x1: lane.x1.min(room.x1),
+        y1: lane.y1.min(room.y1),
     };
     let rooms = door.room_ids.iter().filter_map(|id| c.room(id));
-    rooms.flat_map(|r| &r.rects).map(|r| r.common_area(&cut)).sum()
+    let pieces = rooms.flat_map(|r| &r.rects).filter(|r| lane.overlaps(r)).map(cut);
+    pieces.map(|piece| obstacle.area_in(&piece)).sum()
 }
 
 /// Returns the rectangles before and behind a door: from `skip` beside its center line, `depth` deep.
@@ -204,7 +206,7 @@ pub fn swing(c: &Context, out: &mut Findings) {
         let [a, b] = squares;
         let square = if inside(&a) >= inside(&b) { a } else { b };
         for object in c.objects_in(into).filter(|o| o.blocks) {
-            if object.rect.common_area(&square) > GRAZE_M2 {
+            if object.outline.area_in(&square) > GRAZE_M2 {
                 let id = &object.placement.placement_id;
                 out.add(format!("{}|{id}", door.door_id), format!("the leaf hits `{id}`"));
             }

@@ -1,10 +1,10 @@
 //! Rules about single objects: within their room, apart from each other, held by something.
 
-use d3dgen_model::Rect;
 use d3dgen_model::domain::Mount;
 
 use super::Findings;
 use crate::context::{Context, Object, Room};
+use crate::outline::Outline;
 
 /// Tolerance of positions, m.
 const SLACK_M: f64 = 0.02;
@@ -38,23 +38,21 @@ pub fn outside(c: &Context, out: &mut Findings) {
             out.add(id, format!("its room `{}` is not in the plan", object.placement.room_id));
             continue;
         };
-        let outside = object.rect.area() - covered(&object.rect, &room.net);
+        let outside = outside_of(&object.outline, room);
         if outside > SLACK_M2 && !inset_fits(object, room) {
             out.add_figure(id, format!("{outside:.3} m2 stand outside the room"), outside, SLACK_M2, "m^2");
         }
     }
 }
 
-fn covered(rect: &Rect, pieces: &[Rect]) -> f64 {
-    pieces.iter().map(|r| r.common_area(rect)).sum()
+/// Returns the area of an outline that lies outside the net floor of a room, m2.
+fn outside_of(outline: &Outline, room: &Room) -> f64 {
+    outline.area() - room.net.iter().map(|r| outline.area_in(r)).sum::<f64>()
 }
 
 /// Returns true when the object fits after giving way by the tolerance on each side.
 fn inset_fits(object: &Object, room: &Room) -> bool {
-    let r = object.rect;
-    let by = SLACK_M.min(r.width() / 2.0).min(r.height() / 2.0);
-    let inner = r.grown(-by);
-    inner.area() - covered(&inner, &room.net) <= SLACK_M2
+    outside_of(&object.outline.shrunk(SLACK_M), room) <= SLACK_M2
 }
 
 pub fn collision(c: &Context, out: &mut Findings) {
@@ -68,8 +66,8 @@ pub fn collision(c: &Context, out: &mut Findings) {
         for j in order[k + 1..].iter().take_while(|j| solid[**j].rect.x0 < a.rect.x1) {
             let b = solid[*j];
             let height = a.placement.top_m().min(b.placement.top_m()) - a.placement.pose.z.max(b.placement.pose.z);
-            let area = a.rect.common_area(&b.rect);
-            if height > SLACK_M && area > SLACK_M2 {
+            let area = if height > SLACK_M { a.outline.common_area(&b.outline) } else { 0.0 };
+            if area > SLACK_M2 {
                 let subject = format!("{}|{}", a.placement.placement_id, b.placement.placement_id);
                 let message = format!("they share {area:.3} m2 over {height:.2} m of height");
                 out.add_figure(subject, message, area, SLACK_M2, "m^2");
@@ -95,15 +93,7 @@ pub fn support(c: &Context, out: &mut Findings) {
 }
 
 fn off_wall(object: &Object, room: &Room) -> Option<String> {
-    let near = object.rect.grown(FROM_WALL_M);
-    let touches = room.plan.net_polygon.edges().any(|e| {
-        let (r, own) = (e.bounds(), object.rect);
-        if e.is_vertical() {
-            near.x0 <= r.x0 && r.x0 <= near.x1 && r.y1 > own.y0 && r.y0 < own.y1
-        } else {
-            near.y0 <= r.y0 && r.y0 <= near.y1 && r.x1 > own.x0 && r.x0 < own.x1
-        }
-    });
+    let touches = room.plan.net_polygon.edges().any(|e| object.outline.distance_to(&e) <= FROM_WALL_M);
     (!touches).then(|| "hangs on a wall and no wall is there".to_owned())
 }
 
@@ -132,7 +122,7 @@ fn off_surface(c: &Context, object: &Object) -> Option<String> {
     if (p.pose.z - top).abs() > SLACK_M {
         return Some(format!("stands at {:.2} m on a top at {top:.2} m", p.pose.z));
     }
-    let share = object.rect.common_area(&base.rect) / object.rect.area().max(1e-9);
+    let share = object.outline.common_area(&base.outline) / object.outline.area().max(1e-9);
     (share < ON_SUPPORT).then(|| format!("{:.0} % of it stand on `{id}`", share * 100.0))
 }
 

@@ -29,7 +29,7 @@ pub fn docks(c: &Context, out: &mut Findings) {
         let p = dock.placement;
         let Some(room) = c.room(&p.room_id) else { continue };
         for door in &room.doors {
-            if door_zones(door).iter().any(|zone| zone.common_area(&dock.rect) > 1e-6) {
+            if door_zones(door).iter().any(|zone| dock.outline.area_in(zone) > 1e-6) {
                 out.add(&p.placement_id, format!("stands in the way of `{}`", door.door_id));
             }
         }
@@ -170,7 +170,8 @@ pub fn regions(c: &Context, out: &mut Findings) {
 fn staging(c: &Context, roi: &Roi, room: &Room, out: &mut Findings) {
     let pieces = roi.polygon.rects();
     let takes = |r: &Rect| pieces.iter().any(|p| p.common_area(r) > REGION_SLACK_M2);
-    let taken = c.objects_in(&roi.room_id).find(|o| o.blocks && takes(&o.rect));
+    let stands = |o: &Object| pieces.iter().any(|p| o.outline.area_in(p) > REGION_SLACK_M2);
+    let taken = c.objects_in(&roi.room_id).find(|o| o.blocks && stands(o));
     if let Some(object) = taken {
         out.add(&roi.roi_id, format!("`{}` stands on it", object.placement.placement_id));
     }

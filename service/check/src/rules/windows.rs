@@ -53,7 +53,7 @@ pub fn blocked(c: &Context, out: &mut Findings) {
             let curtain = object.kind.is_some_and(|k| matches!(k.shape, Shape::Curtain | Shape::Stairs));
             let (low, high) = (object.placement.pose.z, object.placement.top_m());
             let in_light = high > window.sill_m + ON_LINE_M && low < window.head_m - ON_LINE_M;
-            let hides = object.rect.common_area(&strip) > HIDDEN_SHARE * LIGHT_M * window.line.length();
+            let hides = object.outline.area_in(&strip) > HIDDEN_SHARE * LIGHT_M * window.line.length();
             if !curtain && in_light && hides {
                 let id = &object.placement.placement_id;
                 let message = format!("`{id}` is {high:.2} m high in front of a sill at {:.2} m", window.sill_m);

@@ -3,9 +3,15 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "physics")]
+use d3dgen_export::Subject;
+#[cfg(feature = "physics")]
+use d3dgen_model::domain::Domain;
 use d3dgen_model::world::World;
 use d3dgen_pipeline::{generate, world};
 
+#[cfg(feature = "physics")]
+use crate::commands::assets::Kept;
 use crate::error::Error;
 use crate::input::{document, write_text};
 use crate::registry::{RegistryArgs, domain};
@@ -21,6 +27,10 @@ pub struct Args {
     /// Print each report as one JSON line
     #[arg(long)]
     json: bool,
+    /// Step each world in a physics engine too, and name what does not stay where it was put
+    #[cfg(feature = "physics")]
+    #[arg(long)]
+    physics: bool,
     #[command(flatten)]
     registry: RegistryArgs,
 }
@@ -30,6 +40,7 @@ impl Args {
         let registry = self.registry.load()?;
         let mut rows = Vec::new();
         let mut unsound = Vec::new();
+        let mut moving: Vec<String> = Vec::new();
         for path in self.worlds.iter().map(|p| files(p)).collect::<Result<Vec<_>, Error>>()?.concat() {
             let world: World = document(&path)?;
             let plugin = domain(&registry, &world.scene_graph.domain)?;
@@ -39,6 +50,10 @@ impl Args {
                 write_text(None, &format!("{}\n", serde_json::json!(report)))?;
             }
             summary::print_broken(&report);
+            #[cfg(feature = "physics")]
+            if self.physics && !stands(&world, plugin.domain(), &Kept::of(&self.registry.store)?)? {
+                moving.push(report.world.clone());
+            }
             let c = &report.summary;
             let cells = [c.satisfied, c.violated, c.not_decidable].map(|n| n.to_string());
             let verdict = summary::verdict(&report);
@@ -53,15 +68,33 @@ impl Args {
             let header = ["world", "", "rules", "satisfied", "violated", "not decidable"];
             write_text(None, &table(&header, &rows))?;
         }
-        match unsound.first() {
+        let faults = [("break hard rules", &unsound), ("do not stand still", &moving)];
+        match faults.iter().find_map(|(fault, worlds)| Some((fault, worlds.first()?, worlds.len()))) {
             None => Ok(()),
-            Some(first) => Err(Error::Unsound(format!(
-                "{} of {} worlds break hard rules, first {first}",
-                unsound.len(),
-                rows.len()
-            ))),
+            Some((fault, first, count)) => {
+                Err(Error::Unsound(format!("{count} of {} worlds {fault}, first {first}", rows.len())))
+            }
         }
     }
+}
+
+/// Steps a world, and names what moves by itself or begins in something else.
+///
+/// # Errors
+/// `Export` when the world is no scene for simulators.
+#[cfg(feature = "physics")]
+fn stands(world: &World, domain: &Domain, kept: &Kept) -> Result<bool, Error> {
+    let settled = d3dgen_physics::settle(Subject::new(world, domain, kept).scene()?);
+    for moved in &settled.moved {
+        eprintln!("{}: {} does not stay: it ends {:.2} m away", world.name, moved.id, moved.way_m);
+    }
+    for overlap in &settled.overlaps {
+        let [a, b] = &overlap.ids;
+        eprintln!("{}: {a} begins {:.3} m inside {b}", world.name, overlap.depth_m);
+    }
+    let stay = settled.bodies - settled.moved.len();
+    eprintln!("{}: {stay} of {} things that can be moved stay where they were put", world.name, settled.bodies);
+    Ok(settled.moved.is_empty() && settled.overlaps.is_empty())
 }
 
 /// Returns the world files a path stands for.

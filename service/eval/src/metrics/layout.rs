@@ -14,7 +14,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::round;
-use crate::solid::{Scene, shoelace};
+use crate::solid::Scene;
 
 /// Difference between areas that are the same but for rounding, m^2.
 const SAME_M2: f64 = 0.01;
@@ -73,7 +73,7 @@ pub struct Layout {
 /// Measures a world.
 pub(crate) fn measure(scene: &Scene<'_>) -> Layout {
     let (plan, placements) = (&scene.world.floorplan, &scene.world.placements.placements);
-    let areas: Vec<f64> = plan.rooms.iter().map(|r| shoelace(r.net_polygon.corners())).collect();
+    let areas: Vec<f64> = plan.rooms.iter().map(|r| r.net_polygon.signed_area()).collect();
     let floor: f64 = areas.iter().sum();
     let circulation = plan.rooms.iter().filter(|r| r.circulation).count();
     let of_circulation: f64 = plan.rooms.iter().zip(&areas).filter(|(r, _)| r.circulation).map(|(_, a)| a).sum();
@@ -98,7 +98,7 @@ pub(crate) fn measure(scene: &Scene<'_>) -> Layout {
         windows: plan.windows.len() as u32,
         walls: plan.walls.len() as u32,
         floor_area_m2: round(floor),
-        gross_area_m2: round(plan.rooms.iter().map(|r| shoelace(r.polygon.corners())).sum()),
+        gross_area_m2: round(plan.rooms.iter().map(|r| r.polygon.signed_area()).sum()),
         circulation_share: round(if floor > 0.0 { of_circulation / floor } else { 0.0 }),
         objects: placements.len() as u32,
         object_types: types.len() as u32,
@@ -122,7 +122,7 @@ pub(crate) fn measure(scene: &Scene<'_>) -> Layout {
 fn fills_its_bounds(plan: &Floorplan, level: i32) -> bool {
     let polygons = || plan.rooms.iter().filter(|r| r.level == level).map(|r| &r.polygon);
     let bounds = polygons().map(Polygon::bounds).reduce(|a, b| a.union(&b));
-    let filled: f64 = polygons().map(|p| shoelace(p.corners())).sum();
+    let filled: f64 = polygons().map(|p| p.signed_area()).sum();
     bounds.is_none_or(|b| (b.area() - filled).abs() < SAME_M2)
 }
 

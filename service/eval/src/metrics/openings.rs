@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{round, share};
 use crate::kinds::Kinds;
-use crate::solid::{Scene, area_inside};
+use crate::solid::Scene;
 
 /// Depth before an opening without a leaf, m.
 const NO_LEAF_M: f64 = 0.5;
@@ -163,7 +163,7 @@ fn before(scene: &Scene<'_>, opening: &Opening<'_>) -> (Vec<String>, f64) {
     for s in &scene.solids {
         let z = (s.z0.max(opening.z.0), s.z1.min(opening.z.1));
         let belongs = s.is_covering() || opening.window && Kinds::builtin().covers_windows(&s.placement.object);
-        if belongs || z.1 - z.0 <= TOLERANCE_M || !s.bounds.overlaps(&zone) || area_inside(&s.quad, &zone) <= 1e-6 {
+        if belongs || z.1 - z.0 <= TOLERANCE_M || !s.bounds.overlaps(&zone) || s.area_inside(&zone) <= 1e-6 {
             continue;
         }
         objects.push(s.placement.placement_id.clone());

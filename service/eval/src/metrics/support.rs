@@ -7,12 +7,15 @@
 
 use d3dgen_model::Point;
 use d3dgen_model::domain::Mount;
+use parry2d::math::Vector;
+use parry2d::query::PointQuery;
+use parry2d::shape::ConvexPolygon;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::share;
 use crate::kinds::Kinds;
-use crate::solid::{Scene, Solid, along};
+use crate::solid::{Scene, Solid, along, vector};
 
 /// How near a contact is, m.
 const NEAR_M: f64 = 0.01;
@@ -42,7 +45,7 @@ fn held(scene: &Scene<'_>, s: &Solid<'_>) -> bool {
     match s.placement.mount {
         Mount::Floor | Mount::Surface => {
             let contacts: Vec<Point> = s.samples(SAMPLES).filter(|p| rests(scene, s, *p)).collect();
-            contacts.len() >= FEWEST && in_hull(contacts, s.center)
+            contacts.len() >= FEWEST && in_hull(&contacts, s.center)
         }
         Mount::Ceiling => (scene.ceiling(&s.placement.room_id) - s.z1).abs() <= NEAR_M,
         Mount::Wall => hangs(scene, s),
@@ -94,25 +97,9 @@ fn hangs(scene: &Scene<'_>, s: &Solid<'_>) -> bool {
 }
 
 /// Returns true when a point lies in the convex hull of others.
-fn in_hull(mut points: Vec<Point>, p: Point) -> bool {
-    let turn = |a: Point, b: Point, c: Point| (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    let mut hull: Vec<Point> = Vec::new();
-    // Andrew's monotone chain: lower side, then upper side
-    for side in 0..2 {
-        let start = hull.len();
-        for &q in &points {
-            while hull.len() >= start + 2 && turn(hull[hull.len() - 2], hull[hull.len() - 1], q) <= 0.0 {
-                hull.pop();
-            }
-            hull.push(q);
-        }
-        hull.pop();
-        if side == 0 {
-            points.reverse();
-        }
-    }
-    hull.len() >= 3 && (0..hull.len()).all(|i| turn(hull[i], hull[(i + 1) % hull.len()], p) >= -1e-9)
+fn in_hull(points: &[Point], p: Point) -> bool {
+    let points: Vec<Vector> = points.iter().copied().map(vector).collect();
+    ConvexPolygon::from_convex_hull(&points).is_some_and(|hull| hull.distance_to_local_point(vector(p), true) <= 1e-9)
 }
 
 #[cfg(test)]

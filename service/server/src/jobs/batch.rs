@@ -10,9 +10,9 @@ use d3dgen_model::report::Report;
 use d3dgen_model::robot_body::RobotBody;
 use d3dgen_model::style::Style;
 use d3dgen_model::world::World;
-use d3dgen_pipeline::brief;
-use d3dgen_pipeline::generate::{Generated, Settings, furnish_and_check};
+use d3dgen_pipeline::generate::Generated;
 use d3dgen_pipeline::scene_graph::Request;
+use d3dgen_pipeline::task::{self, Failure, Terms};
 use d3dgen_store::{KeyRange, Store};
 use serde::{Deserialize, Serialize};
 use tonic::Status;
@@ -101,6 +101,9 @@ pub struct Done {
     pub failed: BTreeMap<u64, String>,
 }
 
+/// What came of a seed; an error ends the batch.
+type Attempt = Result<Result<Generated, Failure>, d3dgen_pipeline::Error>;
+
 /// Makes the worlds that are not there yet.
 ///
 /// # Errors
@@ -125,7 +128,7 @@ pub(super) fn run(run: &Run, spec: &Batch) -> Result<serde_json::Value, Status> 
 }
 
 /// Makes worlds of so many seeds, each on a thread of its own; in the order of seeds.
-fn side_by_side(run: &Run, spec: &Batch, next: u64, count: usize) -> Vec<Result<Generated, d3dgen_pipeline::Error>> {
+fn side_by_side(run: &Run, spec: &Batch, next: u64, count: usize) -> Vec<Attempt> {
     std::thread::scope(|scope| {
         let all: Vec<_> = (next..).take(count).map(|seed| scope.spawn(move || make(run, spec, seed))).collect();
         all.into_iter().map(|one| one.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
@@ -133,13 +136,7 @@ fn side_by_side(run: &Run, spec: &Batch, next: u64, count: usize) -> Vec<Result<
 }
 
 /// Keeps what came of a seed.
-fn keep(
-    run: &Run,
-    done: &mut Done,
-    dir: &Path,
-    seed: u64,
-    made: Result<Generated, d3dgen_pipeline::Error>,
-) -> Result<(), Status> {
+fn keep(run: &Run, done: &mut Done, dir: &Path, seed: u64, made: Attempt) -> Result<(), Status> {
     let made = outcome(dir, seed, made)?;
     done.tried += 1;
     done.sound += u32::from(made.sound);
@@ -151,8 +148,8 @@ fn keep(
 }
 
 /// Writes the world of a seed, and returns what is kept of it; a seed that is refused is noted, and the batch goes on.
-fn outcome(dir: &Path, seed: u64, made: Result<Generated, d3dgen_pipeline::Error>) -> Result<Made, Status> {
-    Ok(match made {
+fn outcome(dir: &Path, seed: u64, made: Attempt) -> Result<Made, Status> {
+    Ok(match made.map_err(|error| status::stage("building", error))? {
         Ok(generated) => {
             write(dir, seed, &generated.world, &generated.report).map_err(|e| status::io(&e))?;
             let figures = generated.report.figures.iter().map(|(k, v)| (k.clone(), *v)).collect();
@@ -161,22 +158,17 @@ fn outcome(dir: &Path, seed: u64, made: Result<Generated, d3dgen_pipeline::Error
             let reason = (!sound).then(|| format!("breaks {}", first.map_or("a hard rule", |r| r.rule.as_str())));
             Made { seed, name: generated.world.name, sound, figures, reason }
         }
-        Err(error @ d3dgen_pipeline::Error::Cancelled) => return Err(status::stage("building", error)),
-        Err(d3dgen_pipeline::Error::Infeasible { stage, message }) => nothing(seed, format!("{stage}: {message}")),
-        Err(error) => nothing(seed, error.to_string()),
+        Err(Failure { reason, .. }) => {
+            Made { seed, name: String::new(), sound: false, figures: BTreeMap::new(), reason: Some(reason) }
+        }
     })
 }
 
-/// Returns what is kept of a seed without a world.
-fn nothing(seed: u64, reason: String) -> Made {
-    Made { seed, name: String::new(), sound: false, figures: BTreeMap::new(), reason: Some(reason) }
-}
-
-fn make(run: &Run, spec: &Batch, seed: u64) -> Result<Generated, d3dgen_pipeline::Error> {
+fn make(run: &Run, spec: &Batch, seed: u64) -> Attempt {
     let now = run.core.domains.now();
-    let (graph, brief) = brief::rooms(&spec.building.request(seed), &now.registry)?;
-    let settings = Settings { brief, ..Settings::default() };
-    furnish_and_check(&graph, &now.registry, &settings, &mut |_| {}, run.flag())
+    // what contradicts itself is in the world's scene graph
+    let terms = Terms { allow_conflicts: true, ..Terms::default() };
+    task::make(&spec.building.request(seed), &now.registry, terms, run.flag())
 }
 
 /// Writes a world's folder, whole or not at all.
