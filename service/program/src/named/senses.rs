@@ -2,6 +2,7 @@
 //! treatment room of a dental practice has a dental chair.
 
 use d3dgen_model::domain::{Access, Adjacency, AdjacencyRelation, Domain, GENERIC_ROOM_TYPE, Program, Zone};
+use d3dgen_model::offer;
 
 use super::mentions::Vocabulary;
 use crate::named::mention::{Mention, What};
@@ -62,8 +63,8 @@ pub(crate) fn settle(
 /// Returns true for two types of rooms that are counted by the same counters: those of a checkout stand in the sales floor.
 fn share_counters(domain: &Domain, a: &str, b: &str) -> bool {
     let counted = |id: &str| {
-        let line = domain.room_type(id)?.furnishing.first().filter(|line| line.required && line.max > 1)?;
-        Some(&line.item)
+        let kind = domain.room_type(id).filter(|kind| offer::has_counters(domain, kind))?;
+        kind.furnishing.first().map(|line| &line.item)
     };
     a != b && counted(a).is_some_and(|item| counted(b) == Some(item))
 }
