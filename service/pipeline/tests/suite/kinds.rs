@@ -36,7 +36,7 @@ const CALLED: [(&str, &str, usize); 5] = [
 ];
 
 /// Prompts of kinds with a room and an object by which one knows them without its label.
-const KNOWN_BY: [(&str, &str, &str); 42] = [
+const KNOWN_BY: [(&str, &str, &str); 46] = [
     ("prison with 12 cells", "guard_post", "control_console"),
     ("Gefängnis mit 8 Zellen", "prison_cell", "combination_wc"),
     ("indoor swimming pool", "pool_hall", "lifeguard_chair"),
@@ -79,6 +79,10 @@ const KNOWN_BY: [(&str, &str, &str); 42] = [
     ("健身房，25米泳池，男女更衣室和淋浴间", "pool_hall", "lifeguard_chair"),
     ("hemeroteca y sala infantil en una biblioteca municipal", "reading_room", "dining_chair"),
     ("小学校、教室6つ、職員室、体育館", "gym", "court_lines"),
+    ("lavanderia a gettoni con 12 lavatrici", "laundry_hall", "washing_machine"),
+    ("autodealer met een werkplaats", "car_showroom", "display_car"),
+    ("каток с раздевалками", "ice_hall", "ice_sheet"),
+    ("kręgielnia z barem", "bowling_hall", "bowling_lane"),
 ];
 
 /// Rooms of one trade that a building of another was given for a word that both use.
