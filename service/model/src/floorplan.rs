@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::document::{Document, Problem, check_unique};
 use crate::domain::Materials;
 use crate::geometry::{Polygon, Rect, Segment};
-use crate::storeys::{Level, VerticalLink, check_links, is_ground};
+use crate::levels::{Level, VerticalLink, check_links, is_ground};
 
 /// Height of the slices in which what stands at an angle is covered by rectangles, m.
 const COVER_STEP_M: f64 = 0.05;

@@ -18,6 +18,7 @@ pub mod gazetteer;
 pub mod geometry;
 pub mod hours;
 pub mod knowledge;
+mod levels;
 pub mod measures;
 pub mod obstacles;
 pub mod occupancy;

@@ -1,15 +1,15 @@
 //! Regions, points, robots and people of a world.
 
-mod script;
+pub(crate) mod script;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::document::{Document, Problem, check_unique};
 use crate::geometry::{Point, Polygon, Pose};
+use crate::levels::is_ground;
 use crate::passage::RobotWay;
 use crate::scene_graph::Robot;
-use crate::storeys::is_ground;
 
 pub use script::{
     Act, Condition, ConditionOp, Flow, GROUP_SIZES, Itinerary, RobotJob, RobotJobKind, Station, Step,

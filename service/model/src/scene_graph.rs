@@ -6,8 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::document::{Document, Problem, check_unique};
+use crate::levels::{VerticalLink, check_links, is_ground};
 use crate::robot_body::RobotBody;
-use crate::storeys::{VerticalLink, check_links, is_ground};
 use crate::style::Style;
 
 /// Reason of the doors to the corridor or hall.

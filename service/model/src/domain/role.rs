@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::{Domain, RoomType};
 use crate::document::Problem;
 use crate::hours;
-use crate::scenario::{Act, GROUP_SIZES, WALKING_SPEEDS_M_S};
+use crate::scenario::script::{Act, GROUP_SIZES, WALKING_SPEEDS_M_S};
 
 /// A kind of person in the building, for scenarios.
 ///

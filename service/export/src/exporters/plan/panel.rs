@@ -161,13 +161,17 @@ impl Facts<'_> {
         let world = self.world;
         let rooms = world.floorplan.rooms.iter().filter(|r| !r.circulation).count();
         let circulation = world.floorplan.rooms.len() - rooms;
-        let area: f64 =
-            world.floorplan.rooms.iter().filter(|r| !self.outdoor(&r.room_type)).map(|r| r.net_area_m2).sum();
+        let area = |outdoor: bool| -> f64 {
+            let rooms = world.floorplan.rooms.iter().filter(|r| self.outdoor(&r.room_type) == outdoor);
+            rooms.map(|r| r.net_area_m2).sum()
+        };
+        let (inside, outside) = (area(false), area(true));
+        let beside = if outside > 0.0 { format!(" + {outside:.1} m² outdoors") } else { String::new() };
         let doors = world.floorplan.doors.iter().filter(|d| d.kind != DoorKind::Open).count();
         let plus = if circulation > 0 { format!(" + {circulation} circulation") } else { String::new() };
         let mut rows = vec![
             ("Rooms", format!("{rooms}{plus}")),
-            ("Net floor area", format!("{area:.1} m²")),
+            ("Net floor area", format!("{inside:.1} m²{beside}")),
             ("Outer size", format!("{:.2} × {:.2} m", self.around.width(), self.around.height())),
             ("Doors, windows", format!("{doors}, {}", world.floorplan.windows.len())),
             ("Objects", world.placements.placements.len().to_string()),
