@@ -7,7 +7,7 @@ Usage: judge_simulators.py --kit FOLDER [--program d3dgen] [--worlds N | --promp
 The kit is the folder of acceptance checks (check_mjcf.py, check_sdf.py, check_usd.py, check_simready.py, check_glb.mjs,
 check_nav2.py, check_rmf.py), installed by its setup.sh. Worlds are those of PROMPTS in turn of domains, or those of a file with
 a prompt a line, seed by place in the list; or folders of worlds that are there already. --skip leaves out consumers by the start of their titles: `--skip Newton,SimReady`.
-Every figure is what a check printed; nothing is rounded up. Exit status 0 when every world is accepted by every check that ran.
+Every figure is what a check printed; nothing is rounded up. Interrupted, it counts the worlds that were judged whole. Exit status 0 when every world is accepted by every check that ran.
 """
 
 import argparse
@@ -100,15 +100,24 @@ class Consumer:
         return {"ok": verdict.get("ok", False), "seconds": seconds, "refused": codes["joint_blocked"] + codes["joint_limit"], "moved": codes["drift"] + codes["tilt"], **figures}
 
 
+def kit_python():
+    """The Python of the kit's `world` environment, which has all that its checks import; this one where it is not there."""
+    cache = Path(os.environ.get("SIM_ACCEPT_CACHE") or Path.home() / ".cache/sim-accept")
+    own = cache / "venv/world/bin/python"
+    return own if own.exists() else sys.executable
+
+
 def consumers(kit):
     """The consumers, with the commands that judge a world's folder."""
-    check = lambda name: [sys.executable, kit / name]
+    python = kit_python()
+    check = lambda name: [python, kit / name]
     sweep = {"doorways": "sweep_paths", "doorways_open": "sweep_open"}
     stepped = lambda engine: {"bodies": f"{engine}_dynamic_bodies", "joints": f"{engine}_joints", "drift": f"{engine}_max_drift_m"}
     usd = lambda w, engine: [*check("check_usd.py"), w / "usd/world.usda", "--engine", engine, "--world", w / "usd/manifest.json", "--path", w / "usd/paths.json", "--timeout", 1400]
     mujoco = {"bodies": "settle_free_bodies", "stable": "settle_stable_percent", "joints": "doors", "doors_open": "doors_open_percent", **sweep}
     return [
-        Consumer("MuJoCo", "mujoco", lambda w: [[*check("check_mjcf.py"), w / "mujoco/world.xml", "--settle", "--doors", "--path", w / "mujoco/paths.json"]], mujoco),
+        Consumer("MuJoCo, scenes (MolmoSpaces' rule)", "mujoco", lambda w: [[*check("check_mjcf.py"), w / "mujoco/world.xml", "--settle", "--doors", "--path", w / "mujoco/paths.json"]], mujoco),
+        Consumer("MuJoCo, all joints at once", "mujoco", lambda w: [[*check("check_mjcf.py"), w / "mujoco/world.xml"]], stepped("mujoco")),
         Consumer("Gazebo Fortress (libsdformat, DART)", "gazebo", lambda w: [[*check("check_sdf.py"), w / "gazebo/world.sdf", "--timeout", 1400]], stepped("gazebo")),
         Consumer("OpenUSD and NVIDIA's rules", "usd", lambda w: [usd(w, "none")], sweep),
         Consumer("Newton", "usd", lambda w: [usd(w, "newton")], {**stepped("newton"), **sweep}),
@@ -216,6 +225,19 @@ def worlds(given, formats):
         yield folder if made else None, time.monotonic() - begun
 
 
+def judge(world, consumer):
+    """The figures of a world from every command of a consumer, each said as it comes."""
+    for command in consumer.commands(world):
+        verdict, seconds = last_json(command)
+        found = consumer.found(verdict, seconds)
+        if found.get("doorways") is not None:
+            found["reached"], found["rooms"] = rooms_reached(world, verdict)
+        print(f"{world.name} {consumer.title}: {'accepted' if found['ok'] else 'REFUSED'}, {seconds:.0f} s", flush=True)
+        for failure in [] if found["ok"] else verdict.get("failures", [])[:8]:
+            print(f"    {failure['code']}: {failure['message'][:220]}", flush=True)
+        yield found
+
+
 def which(given):
     """How this run is asked for again."""
     if given.made:
@@ -239,25 +261,20 @@ def main():
     left_out = tuple(title for title in given.skip.split(",") if title)
     asked = [c for c in consumers(given.kit) if c.format in formats and not (left_out and c.title.startswith(left_out))]
     results, made, storeys, refused, took = collections.defaultdict(list), 0, 0, 0, []
-    for world, seconds in worlds(given, formats):
-        took.extend([seconds] if seconds is not None else [])
-        if world is None:
-            refused += 1
-            continue
-        made += 1
-        storeys += len(json.loads((world / "world.json").read_text())["floorplan"].get("levels", [])) > 1
-        for consumer in asked:
-            for command in consumer.commands(world):
-                verdict, seconds = last_json(command)
-                found = consumer.found(verdict, seconds)
-                if found.get("doorways") is not None:
-                    found["reached"], found["rooms"] = rooms_reached(world, verdict)
-                results[consumer.title].append(found)
-                print(f"{world.name} {consumer.title}: {'accepted' if found['ok'] else 'REFUSED'}, {seconds:.0f} s", flush=True)
-                if not found["ok"]:
-                    refused += 1
-                    for failure in verdict.get("failures", [])[:8]:
-                        print(f"    {failure['code']}: {failure['message'][:220]}", flush=True)
+    try:
+        for world, seconds in worlds(given, formats):
+            took.extend([seconds] if seconds is not None else [])
+            if world is None:
+                refused += 1
+                continue
+            judged = [(c.title, found) for c in asked for found in judge(world, c)]
+            for title, found in judged:
+                results[title].append(found)
+            made += 1
+            storeys += len(json.loads((world / "world.json").read_text())["floorplan"].get("levels", [])) > 1
+            refused += sum(not found["ok"] for _, found in judged)
+    except KeyboardInterrupt:
+        print("interrupted: the table is of the worlds that were judged whole")
     rows = [row(c.title, results[c.title]) for c in asked if results[c.title]]
     print("\n".join(rows))
     if given.table and rows:

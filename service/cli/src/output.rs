@@ -137,6 +137,18 @@ impl Output {
             .map_err(|source| Error::Write { path: self.path.join(name), source })
     }
 
+    /// Puts a file of the folder that is kept elsewhere: a hard link, or a copy where the system can make none.
+    ///
+    /// # Errors
+    /// As [`Output::write`].
+    pub fn link(&self, name: &str, kept: &Path) -> Result<(), Error> {
+        let file = self.fresh().join(name);
+        let folder = file.parent().map_or(Ok(()), fs::create_dir_all);
+        folder
+            .and_then(|()| fs::hard_link(kept, &file).or_else(|_| fs::copy(kept, &file).map(|_| ())))
+            .map_err(|source| Error::Write { path: self.path.join(name), source })
+    }
+
     /// Returns a file that stays in the folder unless it is written anew; none in a folder that goes away whole.
     pub fn earlier(&self, name: &str) -> Option<Vec<u8>> {
         self.adds.then(|| fs::read(self.path.join(name)).ok()).flatten()
