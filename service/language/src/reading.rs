@@ -262,6 +262,11 @@ fn join_unknown<'l>(chunks: Vec<Chunk<'l>>, tokens: &[Token]) -> Vec<Chunk<'l>> 
                 && c.has("number")
                 && is_spaced(&c.text)
         };
+        let mut chunk = chunk;
+        // "로봇이": nor does the syllable of a number that ends a word
+        if numeral(&chunk) && tokens[chunk.tokens.start].joined && joined.last().is_some_and(|l| is_word(l, tokens)) {
+            chunk.senses.retain(|s| s.class != "number");
+        }
         match joined.last_mut() {
             Some(last) if numeral(last) && sign(&chunk) && tokens[chunk.tokens.start].joined => {
                 last.senses.clear();
@@ -276,6 +281,12 @@ fn join_unknown<'l>(chunks: Vec<Chunk<'l>>, tokens: &[Token]) -> Vec<Chunk<'l>> 
         }
     }
     joined
+}
+
+/// Returns true for what is no number, and no mark.
+fn is_word(chunk: &Chunk, tokens: &[Token]) -> bool {
+    let counts = chunk.has("number") || chunk.has("multiplier") || chunk.number.is_some();
+    tokens[chunk.tokens.start].kind == TokenKind::Sign && !counts
 }
 
 /// Returns true for signs of scripts that write spaces between words.

@@ -35,6 +35,8 @@ pub(crate) struct Stated {
     pub mention: bool,
     /// True for a room with words of its own: "an office for the boss".
     pub own: bool,
+    /// True for rooms that the name of a home counts, "3-Zimmer-Wohnung": those that it names elsewhere are among them.
+    pub counted: bool,
 }
 
 /// Storeys that words name.
@@ -50,7 +52,8 @@ pub(crate) enum Storey {
 
 impl Stated {
     fn new(node: &Node, fact: Fact) -> Self {
-        Self { tokens: node.tokens.clone(), also: None, storey: None, fact, mention: false, own: false }
+        let tokens = node.tokens.clone();
+        Self { tokens, also: None, storey: None, fact, mention: false, own: false, counted: false }
     }
 }
 
@@ -61,6 +64,8 @@ pub(crate) struct Maker<'a> {
     /// True where the first floor is the ground floor.
     pub first_is_ground: bool,
     pub facts: Vec<Stated>,
+    /// Words of facts that others state: more work of robots that were named before.
+    pub spoken_of: Vec<Range<usize>>,
 }
 
 /// What a room gets from around it.
@@ -92,7 +97,7 @@ impl Maker<'_> {
             Some("capacity") => self.capacity(node, None),
             Some("people") => self.people(node),
             Some("robots") => self.robots(node),
-            Some("lies") => self.relation(node),
+            Some("lies") => self.relation(node, around),
             Some("forbidden") => self.forbidden(node),
             Some("storeys") => self.storeys(node),
             Some("area") => self.area(node),
@@ -106,7 +111,8 @@ impl Maker<'_> {
             }
             Some("on_storey") => self.on_storey(node, around),
             Some("storey_ref") => self.storey_alone(node),
-            Some("does" | "does_more") => self.work_of_nobody(node),
+            Some("does" | "does_more") => self.more_work(node),
+            Some("kept_out") => self.more_kept_out(node),
             Some("each_group") => self.each_group(node),
             Some("each_person") => self.each_person(node),
             Some("every_room") => self.every_room(node),
@@ -116,7 +122,7 @@ impl Maker<'_> {
             Some("style") => self.style(node),
             Some("site") => self.site(node),
             Some("access") => self.say(node, Fact::Accessible(AccessAsk::default())),
-            Some("wish") => self.other(node),
+            Some("wish" | "hours") => self.other(node),
             _ => return false,
         }
         true
@@ -163,13 +169,6 @@ impl Maker<'_> {
         self.facts.push(Stated { storey, ..Stated::new(node, fact) });
     }
 
-    /// States the rooms and things of work that no robot is found for.
-    fn work_of_nobody(&mut self, node: &Node) {
-        for (_, part) in node.fields.iter().filter(|(name, _)| ["what", "from", "to", "at"].contains(&&**name)) {
-            self.state(part, Around::default());
-        }
-    }
-
     /// Returns the storeys that words name.
     fn storeys_named(&self, level: &Node) -> Vec<Storey> {
         if level.field("each").is_some() {
@@ -204,7 +203,7 @@ impl Maker<'_> {
     fn objects(&mut self, node: &Node) {
         let within = node.field("in").cloned();
         let mut ask = ObjectsAsk {
-            object: self.known.subject(node, "object", self.reading),
+            object: self.known.object(node, self.reading),
             count: count(node).or_else(|| several(node, &["object"])).unwrap_or_default(),
             room: within.as_ref().map(|n| self.subject(n)),
             each_room: within.as_ref().is_some_and(|n| n.field("each").is_some() || count(n).is_some_and(|c| c.n > 1)),
@@ -213,9 +212,6 @@ impl Maker<'_> {
         // "one-way flow" is one of nothing
         if ask.object.id.is_none() && ask.count == AskedCount::exactly(1) {
             return self.other(node);
-        }
-        if node.field("each_of").is_some() {
-            ask.each_room = true;
         }
         if let Some(people) = node.field("hold").and_then(|held| count(held).or_else(|| number(held))) {
             self.known.size_for(&mut ask.object, people.n, &mut ask.attributes);
@@ -245,7 +241,8 @@ impl Maker<'_> {
             None => (count(node), kind.unwrap_or(PlaceKind::Seats)),
         };
         let all = node.field("all").and_then(|all| self::count(all));
-        let Some(count) = count.or(all) else { return self.other(node) };
+        let bare = node.field("bare").map(|_| AskedCount::default());
+        let Some(count) = count.or(all).or(bare) else { return self.other(node) };
         // "48 children in 4 groups", "3 groups"
         if let Some(all) = all {
             let each = AskedCount { n: all.n.div_ceil(groups.unwrap_or(1).max(1)), ..all };
@@ -257,17 +254,18 @@ impl Maker<'_> {
             let each = AskedCount::at_least(1);
             return self.say(node, Fact::Capacity(CapacityAsk { of, count: each, groups, ..CapacityAsk::default() }));
         }
-        if what.is_some_and(|w| w.is("capacity", Some("locker"))) {
-            let object = Subject::known("lockers", what.map_or("", |w| self.reading.written(w.tokens.clone())));
-            return self.say(node, Fact::Objects(ObjectsAsk { object, count, ..ObjectsAsk::default() }));
-        }
         let within = node.field("in").cloned();
-        let room = room.or_else(|| within.as_ref().map(|n| self.subject(n)));
+        let named = node.field("room").map(|_| self.known.subject(node, "room", self.reading));
+        let room = room.or_else(|| within.as_ref().map(|n| self.subject(n))).or_else(|| named.clone());
         let each_room =
             within.as_ref().is_some_and(|n| n.field("each").is_some() || self::count(n).is_some_and(|c| c.n > 1));
         self.say(node, Fact::Capacity(CapacityAsk { of, count, room, each_room, groups, ..CapacityAsk::default() }));
         if let Some(within) = within {
             self.state(&within, Around { mention: true, ..Around::default() });
+        }
+        if let Some(room) = named {
+            let asked = Fact::Rooms(RoomsAsk { room, ..RoomsAsk::default() });
+            self.facts.push(Stated { mention: true, ..Stated::new(node, asked) });
         }
         self.some_places(node, of);
     }
@@ -278,7 +276,7 @@ impl Maker<'_> {
         if let Some(within) = node.field("part_in").cloned() {
             let room = Some(self.subject(&within));
             self.say(node, Fact::Capacity(CapacityAsk { of, count, room, among: true, ..CapacityAsk::default() }));
-            self.mention(&within);
+            self.mention(&within, Around::default());
         }
         let likes: Vec<Range<usize>> = node.all("like").map(|n| n.tokens.clone()).collect();
         if let Some(end) = likes.last().map(|l| l.end) {
@@ -335,14 +333,17 @@ impl Maker<'_> {
     }
 
     /// States a room or an object that is only spoken of.
-    fn mention(&mut self, node: &Rc<Node>) {
+    fn mention(&mut self, node: &Rc<Node>, around: Around) {
         let from = self.facts.len();
-        self.state(node, Around { mention: true, ..Around::default() });
+        self.state(node, Around { mention: true, ..around });
         self.facts[from..].iter_mut().for_each(|f| f.mention = true);
     }
 
-    fn relation(&mut self, node: &Node) {
-        let Some(kind) = node.field("relation").and_then(|r| relation_kind(r)) else { return self.other(node) };
+    fn relation(&mut self, node: &Node, around: Around) {
+        let Some(word) = node.field("relation").cloned() else { return self.other(node) };
+        let Some(kind) = relation_kind(&word) else { return self.other(node) };
+        // "the desk visible from the ward": the ward sees it
+        let seen = word.values("relation").next() == Some("seen");
         let denied = node.field("not").is_some();
         let kind = match (kind, denied) {
             (RelationKind::Door | RelationKind::OpenTo | RelationKind::OnlyFrom, true) => RelationKind::NotFrom,
@@ -363,14 +364,17 @@ impl Maker<'_> {
         firsts.iter().chain(&seconds).for_each(|n| {
             // a room with a number or for the first time is asked for, else spoken of
             if n.is("rooms", Some("counted")) {
-                self.state(n, Around::default());
+                self.state(n, around);
             } else {
-                self.mention(n)
+                self.mention(n, around)
             }
         });
         for (a, b) in pairs {
-            let (a, b) = if kind == RelationKind::Sees && node.field("seen").is_some() { (b, a) } else { (a, b) };
-            self.say(node, Fact::Relation(RelationAsk { a, relation: kind, b }));
+            let (a, b) = if seen { (b, a) } else { (a, b) };
+            let again = node.field("again").and_then(|r| relation_kind(r));
+            for relation in [Some(kind), again].into_iter().flatten() {
+                self.say(node, Fact::Relation(RelationAsk { a: a.clone(), relation, b: b.clone() }));
+            }
         }
     }
 
@@ -454,7 +458,8 @@ impl Maker<'_> {
                         if n > 0 {
                             let room = Subject::known(id, self.reading.written(node.tokens.clone()));
                             let count = AskedCount::exactly(n);
-                            self.say(node, Fact::Rooms(RoomsAsk { room, count, area_m2, ..RoomsAsk::default() }));
+                            let rooms = Fact::Rooms(RoomsAsk { room, count, area_m2, ..RoomsAsk::default() });
+                            self.facts.push(Stated { counted: true, ..Stated::new(node, rooms) });
                         }
                     }
                 }

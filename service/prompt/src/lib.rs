@@ -22,6 +22,7 @@
 mod building;
 mod facts;
 mod grammar;
+mod homes;
 mod likely;
 mod node;
 mod parse;

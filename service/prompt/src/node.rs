@@ -53,7 +53,9 @@ impl Node {
         let first = &reading.tokens()[chunk.tokens.start];
         let mark = chunk.tokens.len() == 1 && first.kind == TokenKind::Mark;
         let mut senses: Vec<(Arc<str>, Arc<str>)> = Vec::new();
-        for sense in &chunk.senses {
+        // "pięć" is five, and without its marks an oven
+        let thing = |class: &str| ["room", "object", "kind"].contains(&class);
+        for sense in chunk.senses.iter().filter(|s| chunk.number.is_none() || !thing(s.class)) {
             let sense = (Arc::from(sense.class), Arc::from(sense.value));
             if !senses.contains(&sense) {
                 senses.push(sense);

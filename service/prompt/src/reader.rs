@@ -13,6 +13,7 @@ use d3dgen_plugins::Registry;
 use crate::building::{building, place, stretch};
 use crate::facts::{Maker, Stated};
 use crate::grammar::Grammar;
+use crate::homes;
 use crate::node::Node;
 use crate::parse::{Applied, parse};
 use crate::shown::shown;
@@ -71,7 +72,6 @@ impl PromptReader {
         let leaves = without_places(leaves, &places);
         let building = building(&self.registry, &leaves, &reading);
         let leaves = named(leaves, &building.nodes, &places);
-        let (nodes, applied) = parse(grammar, leaves);
         let domain = building.first.as_ref().map(|b| b.domain.as_deref().unwrap_or(Known::stand_in()));
         let country = place.as_ref().map(|p| p.country_code.as_str());
         let first_is_ground = match country {
@@ -80,13 +80,17 @@ impl PromptReader {
         };
         let building_type = building.first.as_ref().and_then(|b| b.building_type.as_deref());
         let known = Known::of(&self.registry, domain, building_type);
+        let (nodes, applied) = parse(grammar, leaves.into_iter().map(|n| known.as_meant(n)).collect());
         let told = Rc::clone(&known.told_by_a_part);
-        let mut maker = Maker { reading: &reading, known, first_is_ground, facts: Vec::new() };
+        let (facts, spoken_of) = (Vec::new(), Vec::new());
+        let mut maker = Maker { reading: &reading, known, first_is_ground, facts, spoken_of };
         nodes.iter().for_each(|n| {
             maker.add(n);
         });
         let facts = storeys::settled(maker.facts, building.first.as_ref());
-        let (facts, spoken_of) = settled(facts);
+        let (facts, named) = homes::named_among(facts);
+        let (facts, mut spoken_of) = settled(facts);
+        spoken_of.extend(named.into_iter().chain(maker.spoken_of));
         let brief = Brief {
             languages: reading.languages().iter().map(|l| (*l).to_owned()).collect(),
             building: building.first,

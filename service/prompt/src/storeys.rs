@@ -59,7 +59,15 @@ fn on_its_storey(facts: Vec<Stated>) -> Vec<Stated> {
             let words = stated.also.take().unwrap_or(stated.tokens.clone());
             if !out.iter().any(|o| matches!(o.fact, Fact::Site(_)) && o.tokens == words) {
                 let site = Fact::Site(SiteAsk { kind: SiteKind::Inside });
-                out.push(Stated { tokens: words, also: None, storey: None, fact: site, mention: false, own: false });
+                out.push(Stated {
+                    tokens: words,
+                    also: None,
+                    storey: None,
+                    fact: site,
+                    mention: false,
+                    own: false,
+                    counted: false,
+                });
             }
             if alone {
                 continue;

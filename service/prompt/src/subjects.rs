@@ -28,6 +28,10 @@ pub(crate) struct FactsData {
     stand_in: String,
     /// Kinds of homes that lie within one storey of a house.
     pub within_a_storey: Vec<String>,
+    /// Rooms that a list of all rooms of a home names.
+    pub lists: Vec<String>,
+    /// Rooms that the figure in a home's name counts, by the room that it is read as.
+    pub counted: BTreeMap<String, Vec<String>>,
 }
 
 pub(crate) fn facts_data() -> &'static FactsData {
@@ -53,7 +57,7 @@ impl<'d> Known<'d> {
     /// Returns what a domain and a kind of building in it know; nothing for a building that no domain knows.
     pub fn of(registry: &'d Registry, domain: Option<&str>, building_type: Option<&str>) -> Self {
         let Some(plugin) = domain.and_then(|d| registry.get(d)) else { return Self::default() };
-        let kind = plugin.domain().building_types.iter().find(|b| Some(b.id.as_str()) == building_type);
+        let kind = building_type.and_then(|id| plugin.domain().building_type(id));
         let program = kind.and_then(|b| plugin.domain().program(&b.program));
         Self {
             program,
@@ -142,9 +146,32 @@ impl<'d> Known<'d> {
         let strange = class == "room" && own.iter().any(|n| n.is_unknown());
         let id = id.filter(|id| !strange || self.rooms.is_empty() || self.rooms.contains(id));
         let told = || likely::room_called(&name, id.as_deref(), reading.languages(), |room| self.rooms.contains(room));
-        let Some(likely) = (class == "room").then(told).flatten() else { return Subject { id, name } };
+        // "home office", "chambre d'amis": the building's own name for it
+        let whole = own.is_empty() && id.as_ref().is_some_and(|id| self.rooms.contains(id));
+        let Some(likely) = (class == "room" && !whole).then(told).flatten() else { return Subject { id, name } };
         self.told_by_a_part.borrow_mut().insert(name.clone(), likely.to_owned());
         Subject::known(likely, &name)
+    }
+
+    /// Returns the object that a node of the grammar is about; what only some domains have is told by its words where this one has not.
+    pub fn object(&self, node: &Node, reading: &Reading) -> Subject {
+        let mut object = self.subject(node, "object", reading);
+        let own = node.all("own").flat_map(|n| n.values("unbuilt")).find(|id| self.objects.contains(*id));
+        object.id = object.id.or_else(|| own.map(str::to_owned));
+        object
+    }
+
+    /// Takes the sense of a room from a word that names one of other buildings only, and an object of this one: the screens of an
+    /// office, the wardrobe of a flat.
+    pub fn as_meant(&self, node: Rc<Node>) -> Rc<Node> {
+        let known = |class, of: &BTreeSet<String>| node.values(class).any(|v| of.contains(v));
+        let elsewhere = !self.rooms.is_empty() && node.is("room", None) && !known("room", &self.rooms);
+        if !elsewhere || !known("object", &self.objects) || node.is("attribute", None) {
+            return node;
+        }
+        let mut node = (*node).clone();
+        node.senses.retain(|(class, _)| **class != *"room");
+        Rc::new(node)
     }
 
     /// Returns the object that places are: desks, beds.
@@ -167,10 +194,12 @@ impl<'d> Known<'d> {
     /// Returns the room or object of a node, whichever it is about.
     pub fn any(&self, node: &Node, reading: &Reading) -> Subject {
         match node.made() {
-            Some("objects") => self.subject(node, "object", reading),
+            Some("objects") => self.object(node, reading),
             Some("rooms") => self.subject(node, "room", reading),
             Some("capacity") => self.places(node, reading),
-            _ if node.is("thing", Some(ENTRANCE)) => Subject::known(ENTRANCE, reading.written(node.tokens.clone())),
+            _ if node.is("thing", Some(ENTRANCE)) || node.made() == Some("by_entrance") => {
+                Subject::known(ENTRANCE, reading.written(node.tokens.clone()))
+            }
             _ => Subject::unknown(reading.written(node.tokens.clone())),
         }
     }

@@ -6,6 +6,7 @@ use d3dgen_model::placements::Placement;
 use d3dgen_model::report::Fate;
 use d3dgen_model::scene_graph::GraphRoom;
 
+use super::claims::ENTRANCE;
 use super::{Asked, Finding, ids_of, names_of};
 
 /// Floor between two rooms up to which they are next to each other without a wall in common, m.
@@ -20,6 +21,9 @@ impl<'a> Asked<'a> {
         let a = self.rooms_meant(ask, &asked.a);
         if a.is_empty() {
             return self.things_in(ask, asked).unwrap_or_else(|| missing(&asked.a));
+        }
+        if asked.b.id.as_deref() == Some(ENTRANCE) && asked.relation == RelationKind::NextTo {
+            return self.by_entrance(&a);
         }
         let b = self.rooms_meant(ask, &asked.b);
         if b.is_empty() {
@@ -54,6 +58,26 @@ impl<'a> Asked<'a> {
         let n = (a.len() - not.len()) as u32;
         let of = AskedCount::at_least(a.len() as u32);
         Finding { asked: Some(f64::from(of.n)), measured: Some(f64::from(n)), ..Finding::of(fate, reason).with(ids()) }
+    }
+
+    /// Answers for rooms at the way into the building: measured from its doors, not from the hall behind them.
+    fn by_entrance(&self, rooms: &[&'a GraphRoom]) -> Finding {
+        let plan = &self.world.floorplan;
+        let doors = || plan.doors.iter().filter(|d| d.entrance);
+        let gap_m = |r: &GraphRoom| {
+            let bounds = plan.room(&r.id)?.polygon.bounds();
+            doors().map(|d| bounds.distance_to(d.line.middle())).min_by(f64::total_cmp)
+        };
+        let gaps: Vec<f64> = rooms.iter().filter(|r| r.level == 0).filter_map(|r| gap_m(r)).collect();
+        let far = gaps.iter().copied().max_by(f64::total_cmp).filter(|_| gaps.len() == rooms.len());
+        match far {
+            Some(gap) if gap <= NEAR_M => Finding::honored(ids_of(rooms)),
+            Some(gap) => {
+                let reason = format!("{gap:.1} m from the entrance, at most {NEAR_M} m is beside it");
+                Finding::of(Fate::LeftOut, reason).with(ids_of(rooms))
+            }
+            None => Finding::of(Fate::LeftOut, "not on the storey of the entrance".into()).with(ids_of(rooms)),
+        }
     }
 
     fn lie_so(&self, relation: RelationKind, a: &'a GraphRoom, b: &GraphRoom) -> bool {

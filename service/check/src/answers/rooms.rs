@@ -15,6 +15,8 @@ use super::{Asked, Finding, MEASURE_MISS, ids_of, listed, names_of};
 
 /// Attribute of rooms that people in wheelchairs use.
 pub(super) const ACCESSIBLE: &str = "accessible";
+/// How much smaller the smallest of equally large rooms is than the largest, at most, as a share of the largest.
+const EQUAL_SIZES: f64 = 0.1;
 /// Attributes that say for how many a room is: so many sleep there, or else have their desk.
 const FOR_SO_MANY: [(&str, u32); 2] = [("single", 1), ("double", 2)];
 
@@ -183,6 +185,12 @@ impl<'a> Asked<'a> {
             "large" => all(&|r| area(r) >= usual(r)),
             "small" => all(&|r| area(r) <= usual(r)),
             "garden_door" | "outdoor_door" => all(&|r| plan.doors_of(&r.id).any(|d| outdoors(d) && !d.entrance)),
+            "equal_size" => {
+                let areas: Vec<f64> = rooms.iter().map(area).collect();
+                let (least, most) = areas.iter().fold((f64::MAX, 0.0_f64), |(l, m), a| (l.min(*a), m.max(*a)));
+                let reason = || format!("not equally large: {least:.1} to {most:.1} m2");
+                Finding::when(most - least <= EQUAL_SIZES * most, Vec::new(), reason)
+            }
             "own_bathroom" => all(&|r| self.doors_between(&r.id, wet).next().is_some()),
             "own_entrance" => all(&|r| plan.doors_of(&r.id).any(outdoors)),
             other => self.other_attribute(other, rooms),

@@ -1,11 +1,12 @@
 //! Robots and their work.
 
 use std::ops::Range;
+use std::rc::Rc;
 
-use d3dgen_model::brief::{AskedTask, Fact, RobotsAsk};
+use d3dgen_model::brief::{AskedTask, Fact, RobotsAsk, Subject};
 
-use super::Maker;
 use super::values::{count, kind_of_work, measure, number, several, sides, work_of};
+use super::{Around, Maker};
 use crate::node::Node;
 
 impl Maker<'_> {
@@ -39,6 +40,9 @@ impl Maker<'_> {
             let to = node.all("work_at").map(|n| self.subject(n)).collect();
             tasks.push(AskedTask { verb: verb.to_owned(), to, ..AskedTask::default() });
         }
+        let is_empty = |t: &AskedTask| t.what.is_none() && t.from.is_none() && t.to.is_empty();
+        // "fährt nicht in die Zimmer": it drives, and carries nothing
+        tasks.retain(|t| node.field("keep_out").is_none() || t.verb != "bring" || !is_empty(t));
         let verb = tasks.first().map(|t| t.verb.clone());
         let mut kind = kinds.into_iter().next().unwrap_or_else(|| "any".to_owned());
         if kind == "any" {
@@ -76,8 +80,48 @@ impl Maker<'_> {
             .chain(node.all("work_at").cloned());
         let kept = node.all("keep_out").flat_map(|k| k.all("item").cloned().collect::<Vec<_>>());
         for end in ends.chain(kept).collect::<Vec<_>>() {
-            self.mention(&end);
+            self.mention(&end, Around::default());
         }
+    }
+
+    /// States work that stands apart from its robots: that of those named last, else only what it names.
+    pub(super) fn more_work(&mut self, node: &Node) {
+        let somewhere = ["from", "to", "at"].iter().any(|f| node.field(f).is_some());
+        let task = self.task(node).filter(|_| somewhere);
+        if let (Some(task), Some(robots)) = (task, self.robots_before()) {
+            robots.tasks.push(task);
+            self.spoken_of.push(node.tokens.clone());
+        }
+        for (_, part) in node.fields.iter().filter(|(name, _)| ["what", "from", "to", "at"].contains(&&**name)) {
+            self.mention_or_state(part, somewhere);
+        }
+    }
+
+    /// States rooms that the robots named last stay out of.
+    pub(super) fn more_kept_out(&mut self, node: &Node) {
+        let rooms: Vec<Subject> = node.all("item").map(|n| self.subject(n)).collect();
+        let Some(robots) = self.robots_before() else { return self.other(node) };
+        robots.keep_out.extend(rooms);
+        self.spoken_of.push(node.tokens.clone());
+        for room in node.all("item").cloned().collect::<Vec<_>>() {
+            self.mention(&room, Around::default());
+        }
+    }
+
+    fn mention_or_state(&mut self, part: &Rc<Node>, mention: bool) {
+        if mention && self.robots_before().is_some() {
+            self.mention(part, Around::default());
+        } else {
+            self.state(part, Around::default());
+        }
+    }
+
+    /// Returns the robots that were stated last.
+    fn robots_before(&mut self) -> Option<&mut RobotsAsk> {
+        self.facts
+            .iter_mut()
+            .rev()
+            .find_map(|f| if let Fact::Robots(robots) = &mut f.fact { Some(robots) } else { None })
     }
 
     fn task(&self, node: &Node) -> Option<AskedTask> {

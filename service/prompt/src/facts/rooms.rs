@@ -20,8 +20,8 @@ impl Maker<'_> {
                 self.say(node, Fact::Rooms(RoomsAsk { room, count, level: around.level(), ..RoomsAsk::default() }));
             }
         }
-        if node.field("suite").is_some() {
-            return;
+        if let Some(suite) = node.field("suite") {
+            return self.inside_suite(node, suite);
         }
         if self.reads_otherwise(node) || self.reads_as_stations(node) {
             return;
@@ -53,8 +53,7 @@ impl Maker<'_> {
             attributes: attributes(node),
             ..RoomsAsk::default()
         };
-        let some = node.field("some").and_then(|n| number(n));
-        let with = if some.is_none() { node.all("with").cloned().collect() } else { Vec::new() };
+        let with = if node.field("some").is_none() { node.all("with").cloned().collect() } else { Vec::new() };
         let (mut each, inside): (Vec<Rc<Node>>, Vec<Rc<Node>>) =
             with.into_iter().partition(|n| several && n.is("rooms", Some("bare")));
         each.extend(node.all("with_each").filter(|n| self::count(n).is_none_or(|c| c.n == 1)).cloned());
@@ -72,7 +71,9 @@ impl Maker<'_> {
             ask.count = by_sex(sex, asked, ask.count);
         }
         let own = node.field("own").is_some();
-        self.facts.push(Stated { mention: around.mention, own, ..Stated::new(node, Fact::Rooms(ask)) });
+        let every = node.field("every").is_some();
+        let mention = around.mention || every;
+        self.facts.push(Stated { mention, own, ..Stated::new(node, Fact::Rooms(ask)) });
         self.some_of(node, &room, count);
         if room.id.is_none() {
             self.named_for(node, &room);
@@ -82,11 +83,24 @@ impl Maker<'_> {
             self.held(held, &room, several);
         }
         for inner in &inside {
-            self.inside(inner, &room, several);
+            self.inside(inner, &room, several || every);
         }
         node.all("other").for_each(|n| {
             self.state(n, Around::default());
         });
+    }
+
+    /// States what the rooms of a suite have in them, each in the room that such things stand in.
+    fn inside_suite(&mut self, node: &Node, suite: &Node) {
+        let ids = suite.values("suite").next().unwrap_or_default();
+        let name = self.reading.written(suite.tokens.clone());
+        for inner in node.all("with").chain(node.all("hold")) {
+            let stands = |id: &&str| {
+                inner.field("object").is_some_and(|o| self.known.thing_of(&Subject::known(id, name), o).is_some())
+            };
+            let Some(id) = ids.split('+').find(stands).or(ids.split('+').next()) else { continue };
+            self.inside(inner, &Subject::known(id, name), false);
+        }
     }
 
     /// States what a room that no lexicon has is named for: the machine of a "washing machine room".
@@ -105,6 +119,16 @@ impl Maker<'_> {
         let some = node.field("some").map(|n| number(n).unwrap_or(one));
         for held in node.all("some_hold") {
             self.held_by(held, room, some.unwrap_or(one).n);
+        }
+        // "two rooms, one each for 10 and 20 people", "10人用と20人用の会議室": as many as there are numbers
+        let told = node.all("one_hold").count() as u32;
+        if told > count.n
+            && let Some(rooms) = self.facts.iter_mut().rev().find_map(|f| match &mut f.fact {
+                Fact::Rooms(rooms) if rooms.room == *room => Some(rooms),
+                _ => None,
+            })
+        {
+            rooms.count = AskedCount::exactly(told);
         }
         // "180, 110 and 64 seats": what is counted stands behind the last one
         let of = node.all("one_hold").last().and_then(|n| places_of(n)).unwrap_or_default();
@@ -137,9 +161,10 @@ impl Maker<'_> {
 
     /// States things that stand in so many of several rooms: "3 bedrooms, one with a bunk bed".
     fn in_some(&mut self, thing: &Rc<Node>, room: &Subject, rooms: u32) {
+        let at = self.facts.len();
         self.state(thing, Around::default());
-        if let Some(Stated { fact: Fact::Objects(objects), .. }) = self.facts.last_mut() {
-            objects.room = Some(room.clone());
+        if let Some(Stated { fact: Fact::Objects(objects), .. }) = self.facts.get_mut(at) {
+            objects.room.get_or_insert_with(|| room.clone());
             objects.count.n = objects.count.n.saturating_mul(rooms);
         }
     }
@@ -148,6 +173,10 @@ impl Maker<'_> {
     fn without_part(&mut self, node: &Node, room: &Subject, count: AskedCount) -> AskedCount {
         let Some(part) = node.field("part").cloned() else { return count };
         self.state(&part, Around::default());
+        let within = self.subject(&part);
+        for inner in node.all("part_with") {
+            self.inside(inner, &within, false);
+        }
         let of_part = node.field("some").and_then(|n| number(n)).or_else(|| self::count(&part)).map_or(1, |c| c.n);
         let other = self.subject(&part);
         let same = other.id == room.id && other.id.is_some();
@@ -254,9 +283,7 @@ impl Maker<'_> {
             self.say(node, Fact::Style(StyleAsk { word: word.to_owned() }));
             return true;
         }
-        let Some(id) = leaf.values("object").find(|v| self.known.objects.contains(*v)) else { return false };
-        self.object_of(node, &leaf, id);
-        true
+        false
     }
 
     /// States several of what one room has many of: "4 tills" are no four rooms to pay in.
@@ -289,10 +316,12 @@ impl Maker<'_> {
                 self.say(inner, Fact::Relation(relation));
             }
             Some("objects") => {
+                let at = self.facts.len();
                 self.state(inner, Around::default());
-                if let Some(Stated { fact: Fact::Objects(objects), .. }) = self.facts.last_mut() {
-                    objects.room = Some(room.clone());
-                    objects.each_room = several;
+                if let Some(Stated { fact: Fact::Objects(objects), .. }) = self.facts.get_mut(at)
+                    && objects.room.is_none()
+                {
+                    (objects.room, objects.each_room) = (Some(room.clone()), several);
                 }
             }
             _ => self.held(inner, room, several),

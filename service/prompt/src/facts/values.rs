@@ -110,7 +110,8 @@ pub(super) fn sides(node: &Node) -> Option<[f64; 2]> {
 pub(super) fn attributes(node: &Node) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     for attribute in node.all("attribute") {
-        let value = attribute.values("attribute").next().map(str::to_owned);
+        // "a freestanding bathtub" stands like a house
+        let value = attribute.values("attribute").chain(attribute.values("site")).next().map(str::to_owned);
         found.extend(value.into_iter().filter(|v| !found.contains(v)).collect::<Vec<_>>());
     }
     found
@@ -154,7 +155,8 @@ pub(super) fn relation_kind(node: &Node) -> Option<RelationKind> {
         "near" | "around" | "together" => "next_to",
         "open" => "open_to",
         "apart" => "away_from",
-        "sight" => "sees",
+        "sight" | "seen" => "sees",
+        "from_only" => "only_from",
         other => other,
     })
 }
