@@ -7,7 +7,7 @@ Usage: judge_simulators.py --kit FOLDER [--program d3dgen] [--worlds N | --promp
 The kit is the folder of acceptance checks (check_mjcf.py, check_sdf.py, check_usd.py, check_simready.py, check_glb.mjs,
 check_nav2.py, check_rmf.py), installed by its setup.sh. Worlds are those of PROMPTS in turn of domains, or those of a file with
 a prompt a line, seed by place in the list; or folders of worlds that are there already. --skip leaves out consumers by the start of their titles: `--skip Newton,SimReady`.
-Every figure is what a check printed; nothing is rounded up. Exit status 0 when every world is accepted by every check that ran.
+Every figure is what a check printed; nothing is rounded up. Interrupted, it counts the worlds that were judged whole. Exit status 0 when every world is accepted by every check that ran.
 """
 
 import argparse
@@ -72,6 +72,10 @@ PROMPTS = {
 }
 
 
+# Radius of a robot of usual size, m.
+RADIUS_M = 0.25
+
+
 def last_json(command, timeout=1500):
     """Runs a check; returns what it printed last as JSON, and how long it took, s."""
     begun = time.monotonic()
@@ -97,25 +101,40 @@ class Consumer:
         facts = verdict.get("facts", {})
         codes = collections.Counter(f["code"] for f in verdict.get("failures", []))
         figures = {name: facts.get(key) for name, key in self.facts.items()}
-        return {"ok": verdict.get("ok", False), "seconds": seconds, "refused": codes["joint_blocked"] + codes["joint_limit"], "moved": codes["drift"] + codes["tilt"], **figures}
+        return {"ok": verdict.get("ok", False), "seconds": seconds, "refused": codes["joint_blocked"] + codes["joint_limit"], "moved": codes["drift"] + codes["tilt"], "codes": codes, **figures}
+
+
+def kit_python():
+    """The Python of the kit's `world` environment, which has all that its checks import; this one where it is not there."""
+    cache = Path(os.environ.get("SIM_ACCEPT_CACHE") or Path.home() / ".cache/sim-accept")
+    own = cache / "venv/world/bin/python"
+    return own if own.exists() else sys.executable
+
+
+def radius(world):
+    """Radius of the disc that has to pass, m: that of the world's smallest robot, at most RADIUS_M."""
+    robots = json.loads((world / "scenario.json").read_text()).get("robots", [])
+    return min([RADIUS_M, *(task["robot"]["radius_m"] for task in robots)])
 
 
 def consumers(kit):
     """The consumers, with the commands that judge a world's folder."""
-    check = lambda name: [sys.executable, kit / name]
+    python = kit_python()
+    check = lambda name: [python, kit / name]
     sweep = {"doorways": "sweep_paths", "doorways_open": "sweep_open"}
     stepped = lambda engine: {"bodies": f"{engine}_dynamic_bodies", "joints": f"{engine}_joints", "drift": f"{engine}_max_drift_m"}
     usd = lambda w, engine: [*check("check_usd.py"), w / "usd/world.usda", "--engine", engine, "--world", w / "usd/manifest.json", "--path", w / "usd/paths.json", "--timeout", 1400]
     mujoco = {"bodies": "settle_free_bodies", "stable": "settle_stable_percent", "joints": "doors", "doors_open": "doors_open_percent", **sweep}
     return [
-        Consumer("MuJoCo", "mujoco", lambda w: [[*check("check_mjcf.py"), w / "mujoco/world.xml", "--settle", "--doors", "--path", w / "mujoco/paths.json"]], mujoco),
+        Consumer("MuJoCo, scenes (MolmoSpaces' rule)", "mujoco", lambda w: [[*check("check_mjcf.py"), w / "mujoco/world.xml", "--settle", "--doors", "--path", w / "mujoco/paths.json"]], mujoco),
+        Consumer("MuJoCo, all joints at once", "mujoco", lambda w: [[*check("check_mjcf.py"), w / "mujoco/world.xml"]], stepped("mujoco")),
         Consumer("Gazebo Fortress (libsdformat, DART)", "gazebo", lambda w: [[*check("check_sdf.py"), w / "gazebo/world.sdf", "--timeout", 1400]], stepped("gazebo")),
         Consumer("OpenUSD and NVIDIA's rules", "usd", lambda w: [usd(w, "none")], sweep),
         Consumer("Newton", "usd", lambda w: [usd(w, "newton")], {**stepped("newton"), **sweep}),
         Consumer("SimReady Robotics-Prop 3.2", "usd", lambda w: [[*check("check_simready.py"), w / "usd/models"]], {}),
         Consumer("glTF (Khronos validator)", "gltf", lambda w: [["node", kit / "check_glb.mjs", *sorted((w / "gltf").glob("*.glb"))]], {}),
-        Consumer("nav2 (map, graph, masks)", "nav2", lambda w: [[*check("check_nav2.py"), w / "nav2", "--radius", "0.25"]], {}),
-        Consumer("Open-RMF (rmf_site_format)", "rmf", lambda w: [[*check("check_rmf.py"), b, "--radius", "0.25"] for b in sorted((w / "rmf").glob("*.building.yaml"))], {}),
+        Consumer("nav2 (map, graph, masks)", "nav2", lambda w: [[*check("check_nav2.py"), w / "nav2", "--radius", radius(w)]], {}),
+        Consumer("Open-RMF (rmf_site_format)", "rmf", lambda w: [[*check("check_rmf.py"), b, "--radius", radius(w)] for b in sorted((w / "rmf").glob("*.building.yaml"))], {}),
     ]
 
 
@@ -169,10 +188,19 @@ def row(title, results):
 SECTION = "## How they are judged"
 
 
-def page(before, rows, counts, took):
-    """The page with the section of figures written anew."""
+def refusals(results):
+    """What was refused, by consumer, in a line; nothing where nothing was."""
+    counts = {title: sum((r["codes"] for r in found), collections.Counter()) for title, found in results.items()}
+    said = [f"{title}: " + ", ".join(f"{code} {n}" for code, n in sorted(codes.items())) for title, codes in counts.items() if codes]
+    return [f"Refused, by the codes of the kit: {'; '.join(said)}.", ""] if said else []
+
+
+def page(before, rows, counts, took, refused):
+    """The page with the section of figures written anew; sections after it stay."""
     made, storeys, asked = counts
-    return before.split(SECTION)[0] + "\n".join(
+    head, _, old = before.partition(SECTION)
+    after = old.partition("\n## ")
+    return head + "\n".join(
         [
             SECTION,
             "",
@@ -187,13 +215,14 @@ def page(before, rows, counts, took):
             "*Stable*: in MuJoCo a thing that can be moved ends less than 5 cm from where it was in the three seconds after the first, as",
             "MolmoSpaces asks of its scenes; in Gazebo and Newton any body moves at most 2 cm and turns at most 0.05 rad in two seconds.",
             "*Joints*: pushed with 8 N m or 8 N to one limit, to the other and back, they cover nine tenths of their range; in MuJoCo those of",
-            "doors, in Newton all that there are. *Doorways*: a disc of 0.25 m radius, or what the narrowest door leaves, is carried through",
-            "the middle of each and along the routes of robots. *Rooms reached*: joined to the main entrance by open doorways. *Seconds*:",
-            "the check itself.",
+            "doors, in the others all that there are. *Doorways*: a disc of 0.25 m radius, or what the narrowest door leaves, is carried through",
+            "the middle of each and along the routes of robots. nav2 and Open-RMF: a disc as large as the smallest robot, at most 0.25 m.",
+            "*Rooms reached*: joined to the main entrance by open doorways. *Seconds*: the check itself.",
             "",
         ]
         + ([f"Making and writing a world took {statistics.median(took):.1f} s (median), with the start of the program.", ""] if took else [])
-    )
+        + refused
+    ) + after[1] + after[2]
 
 
 def worlds(given, formats):
@@ -214,6 +243,19 @@ def worlds(given, formats):
         if not made:
             print(f"{prompt}: not made: {done.stderr[-300:]}")
         yield folder if made else None, time.monotonic() - begun
+
+
+def judge(world, consumer):
+    """The figures of a world from every command of a consumer, each said as it comes."""
+    for command in consumer.commands(world):
+        verdict, seconds = last_json(command)
+        found = consumer.found(verdict, seconds)
+        if found.get("doorways") is not None:
+            found["reached"], found["rooms"] = rooms_reached(world, verdict)
+        print(f"{world.name} {consumer.title}: {'accepted' if found['ok'] else 'REFUSED'}, {seconds:.0f} s", flush=True)
+        for failure in [] if found["ok"] else verdict.get("failures", [])[:8]:
+            print(f"    {failure['code']}: {failure['message'][:220]}", flush=True)
+        yield found
 
 
 def which(given):
@@ -239,29 +281,24 @@ def main():
     left_out = tuple(title for title in given.skip.split(",") if title)
     asked = [c for c in consumers(given.kit) if c.format in formats and not (left_out and c.title.startswith(left_out))]
     results, made, storeys, refused, took = collections.defaultdict(list), 0, 0, 0, []
-    for world, seconds in worlds(given, formats):
-        took.extend([seconds] if seconds is not None else [])
-        if world is None:
-            refused += 1
-            continue
-        made += 1
-        storeys += len(json.loads((world / "world.json").read_text())["floorplan"].get("levels", [])) > 1
-        for consumer in asked:
-            for command in consumer.commands(world):
-                verdict, seconds = last_json(command)
-                found = consumer.found(verdict, seconds)
-                if found.get("doorways") is not None:
-                    found["reached"], found["rooms"] = rooms_reached(world, verdict)
-                results[consumer.title].append(found)
-                print(f"{world.name} {consumer.title}: {'accepted' if found['ok'] else 'REFUSED'}, {seconds:.0f} s", flush=True)
-                if not found["ok"]:
-                    refused += 1
-                    for failure in verdict.get("failures", [])[:8]:
-                        print(f"    {failure['code']}: {failure['message'][:220]}", flush=True)
+    try:
+        for world, seconds in worlds(given, formats):
+            took.extend([seconds] if seconds is not None else [])
+            if world is None:
+                refused += 1
+                continue
+            judged = [(c.title, found) for c in asked for found in judge(world, c)]
+            for title, found in judged:
+                results[title].append(found)
+            made += 1
+            storeys += len(json.loads((world / "world.json").read_text())["floorplan"].get("levels", [])) > 1
+            refused += sum(not found["ok"] for _, found in judged)
+    except KeyboardInterrupt:
+        print("interrupted: the table is of the worlds that were judged whole")
     rows = [row(c.title, results[c.title]) for c in asked if results[c.title]]
     print("\n".join(rows))
     if given.table and rows:
-        given.table.write_text(page(given.table.read_text(), rows, (made, storeys, which(given)), took))
+        given.table.write_text(page(given.table.read_text(), rows, (made, storeys, which(given)), took, refusals(results)))
     print(f"simulators: {made} worlds, {len(asked)} consumers, {refused} refused")
     sys.exit(1 if refused or not rows else 0)
 

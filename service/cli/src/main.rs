@@ -16,6 +16,7 @@ mod progress;
 mod registry;
 mod remote;
 mod request;
+mod shelf;
 mod stage_clock;
 mod summary;
 mod table;

@@ -137,6 +137,18 @@ impl Output {
             .map_err(|source| Error::Write { path: self.path.join(name), source })
     }
 
+    /// Puts a file of the folder that is kept elsewhere: a hard link, or a copy where the system can make none.
+    ///
+    /// # Errors
+    /// As [`Output::write`].
+    pub fn link(&self, name: &str, kept: &Path) -> Result<(), Error> {
+        let file = self.fresh().join(name);
+        let folder = file.parent().map_or(Ok(()), fs::create_dir_all);
+        folder
+            .and_then(|()| fs::hard_link(kept, &file).or_else(|_| fs::copy(kept, &file).map(|_| ())))
+            .map_err(|source| Error::Write { path: self.path.join(name), source })
+    }
+
     /// Returns a file that stays in the folder unless it is written anew; none in a folder that goes away whole.
     pub fn earlier(&self, name: &str) -> Option<Vec<u8>> {
         self.adds.then(|| fs::read(self.path.join(name)).ok()).flatten()
@@ -319,6 +331,21 @@ mod tests {
         output.commit().unwrap();
         assert_eq!(files(home.path()), ["a"]);
         assert_eq!(files(&path), ["report.json"]);
+    }
+
+    #[test]
+    fn what_is_kept_elsewhere_is_in_the_folder_and_stays_where_it_is_kept() {
+        let home = TempDir::new().unwrap();
+        let kept = home.path().join("kept");
+        fs::write(&kept, b"oak").unwrap();
+        let output = Output::new(&home.path().join("a")).unwrap();
+        output.link("usd/textures/oak.png", &kept).unwrap();
+        assert!(output.link("usd/lost.png", &home.path().join("none")).is_err());
+        output.write("report.json", b"{}").unwrap();
+        output.commit().unwrap();
+        assert_eq!(fs::read(home.path().join("a/usd/textures/oak.png")).unwrap(), b"oak");
+        fs::remove_dir_all(home.path().join("a")).unwrap();
+        assert_eq!(fs::read(&kept).unwrap(), b"oak");
     }
 
     #[test]

@@ -3,9 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use data_encoding::HEXLOWER;
 use serde_json::{Map, Value, json};
-use sha2::{Digest, Sha256};
 
 use crate::exporters::{Exporter, File};
 use crate::scene::SimScene;
@@ -57,8 +55,7 @@ impl<'a> Manifest<'a> {
             self.places.entry(id).or_default().insert(format, place);
         }
         for file in files {
-            self.files
-                .insert(file.path.clone(), (format, HEXLOWER.encode(&Sha256::digest(&file.bytes)), file.bytes.len()));
+            self.files.insert(file.path.clone(), (format, file.sha256(), file.bytes.len()));
         }
     }
 

@@ -43,7 +43,7 @@ pub struct Shot {
 const ROOM_VIEW_DEG: f64 = 62.0;
 const ABOVE_VIEW_DEG: f64 = 30.0;
 /// Direction from the middle of a building to the eye above it.
-const ABOVE: [f64; 3] = [0.30, -0.62, 0.92];
+const ABOVE: [f64; 3] = [0.30, -0.62, 1.5];
 /// Share of the picture that a building takes.
 const FILLS: f64 = 0.93;
 /// Distance between places where the eye could stand, and its least distance to anything, m.
@@ -138,7 +138,7 @@ fn fitted(bounds: &Rect, z: [f64; 2], size_px: [usize; 2]) -> Camera {
     let center = [middle.x, middle.y, z[0]];
     let length = ABOVE.iter().map(|v| v * v).sum::<f64>().sqrt();
     // A building that is deeper than wide is seen from its long side.
-    let from = if bounds.height() > 1.3 * bounds.width() { [0.62, -0.30, 0.92] } else { ABOVE };
+    let from = if bounds.height() > 1.3 * bounds.width() { [0.62, -0.30, ABOVE[2]] } else { ABOVE };
     let toward = from.map(|v| v / length);
     let flat = toward[0].hypot(toward[1]);
     let right = [-toward[1] / flat, toward[0] / flat, 0.0];

@@ -564,6 +564,31 @@ impl SimLeaf {
     }
 }
 
+impl SimLight {
+    /// Returns its color, 1 in the strongest part: Tanner Helland's fit to the locus of black bodies.
+    pub fn white(&self) -> [f64; 3] {
+        let t = (self.kelvin / 100.0).clamp(10.0, 66.0);
+        let green = (99.470_802_586_1 * t.ln() - 161.119_568_166_1) / 255.0;
+        let blue = if t <= 19.0 { 0.0 } else { (138.517_731_223_1 * (t - 10.0).ln() - 305.044_792_730_7) / 255.0 };
+        [1.0, green, blue].map(|v| (v.clamp(0.0, 1.0) * 1e4).round() / 1e4)
+    }
+}
+
+impl SimWindow {
+    /// Returns the box of its pane and its frame.
+    pub fn whole(&self) -> SimBox {
+        let glass = self.glass;
+        let (sin, cos) = glass.yaw_rad.sin_cos();
+        let reach = |b: &SimBox| -> [f64; 3] {
+            let [dx, dy, dz]: [f64; 3] = std::array::from_fn(|i| b.center_m[i] - glass.center_m[i]);
+            let way = [cos * dx + sin * dy, cos * dy - sin * dx, dz];
+            std::array::from_fn(|i| way[i].abs() + b.half_m[i])
+        };
+        let half_m = self.frame.iter().map(reach).fold(glass.half_m, |a, b| std::array::from_fn(|i| a[i].max(b[i])));
+        SimBox { half_m, ..glass }
+    }
+}
+
 impl SimDoor {
     /// Returns true for a door that leads out of the building.
     pub fn leads_out(&self) -> bool {

@@ -28,10 +28,16 @@ const FEW_ROOMS: usize = 14;
 const DARK: f64 = 1.8;
 /// Cost of a meter of outer wall that the room with the door to the garden lacks for that and a window.
 const NO_GARDEN: f64 = 1.0;
-/// Facade of a bedroom whose other walls are those of neighbors, m: a bed with its head beside the window, and the way past its foot;
-/// what a meter less costs.
-const ACROSS_BED_M: f64 = 3.4;
-const ALONG_WINDOW: f64 = 1.5;
+/// Facade of a bedroom with windows in one wall, m: a bed with its head beside the window and the way past its foot, more where the
+/// other walls are those of neighbors; and what a meter less costs.
+const ACROSS_BED_M: f64 = 3.1;
+const ACROSS_BED_IN_ROW_M: f64 = 3.4;
+const ALONG_WINDOW: f64 = 4.0;
+/// Share of the floor from which on a reviewer objects to circulation first, stairs with it; in a home it is less.
+const MUCH_WAY: f64 = 0.20;
+const MUCH_WAY_AT_HOME: f64 = 0.15;
+/// What it costs that the stairs are right beside the door of a home, whose leaf sweeps before their first step.
+const STAIRS_AT_DOOR: f64 = 6.0;
 /// Share by which circulation beyond what is advised counts as larger.
 const ILL_SHARED: f64 = 0.05;
 /// Length from which on the hall of a home is a tunnel, m, what a meter more counts as share of circulation, and how many more
@@ -43,8 +49,8 @@ const DARK_HALL_M: f64 = 6.0;
 const DARK_HALL: f64 = 0.03;
 /// Share of the walls of a corridor behind which there is no room, beside its ends, from which on it serves one side only; and
 /// what more of it counts as share of circulation.
-const ONE_SIDED_FROM: f64 = 0.12;
-const ONE_SIDED: f64 = 0.45;
+const ONE_SIDED_FROM: f64 = 0.1;
+const ONE_SIDED: f64 = 1.0;
 /// What a meter of a corridor that is too long for its one way out counts as share of circulation.
 const ONE_WAY: f64 = 0.1;
 /// What a room that is wanted near the entrance loses by each side of the building that it is away from it.
@@ -93,7 +99,7 @@ const WRONG_SIZES: f64 = 1.5;
 const TOUCHING: f64 = 0.35;
 
 /// What it costs that all wet rooms stand over rooms that people live, sleep or work in.
-const OVER_QUIET: f64 = 4.0;
+const OVER_QUIET: f64 = 9.0;
 
 /// How much more a wet room counts that lies beside no other in a home, where there are few of them.
 const PIPES_AT_HOME: f64 = 2.6;
@@ -537,8 +543,11 @@ impl<'b> Judge<'b> {
                 }
                 _ => {}
             }
-            if self.brief.party.is_some() && spec.zone == Zone::Night && spec.on_spine {
-                score.soft[1] += ALONG_WINDOW * meters((up(ACROSS_BED_M) - longest).max(0));
+            // with windows in one wall only the bed stands along it
+            let lit_once = longest == total || self.brief.party.is_some();
+            if self.home && lit_once && spec.zone == Zone::Night && spec.on_spine {
+                let across = if self.brief.party.is_some() { ACROSS_BED_IN_ROW_M } else { ACROSS_BED_M };
+                score.soft[1] += ALONG_WINDOW * meters((up(across) - longest).max(0));
             }
             if spec.entrance {
                 score.hard += meters((self.entrance_need - room.way_in).max(0));
@@ -581,13 +590,14 @@ impl<'b> Judge<'b> {
         if let Some(spine) = brief.spine
             && !brief.hub
         {
-            // From a fifth on, circulation is what a reviewer objects to first.
             // stairs are of the way too, wherever they stand
             let stairs = (0..rooms.len()).filter(|&i| home && brief.in_core(i)).map(|i| rooms[i].gross_m2).sum::<f64>();
             let way = |area: fn(&Measured) -> f64| area(&rooms[spine]) + brief.ring.map_or(0.0, |r| area(&rooms[r]));
             let share = (way(|r| r.gross_m2) + stairs) / total;
-            score.soft[4] += (share - 0.10).max(0.0) + 5.0 * (share - 0.20).max(0.0);
+            let much = if home { MUCH_WAY_AT_HOME } else { MUCH_WAY };
+            score.soft[4] += (share - 0.10).max(0.0) + 5.0 * (share - much).max(0.0);
             score.soft[4] += ONE_WAY * layout.one_way;
+            score.soft[7] += if layout.stairs_at_door { STAIRS_AT_DOOR } else { 0.0 };
             if home {
                 let longest = layout.boxes.iter().filter(|(r, _)| *r == spine);
                 let longest = longest.map(|(_, b)| meters(b.width().max(b.height()))).fold(0.0, f64::max);

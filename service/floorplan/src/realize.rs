@@ -15,6 +15,8 @@ use super::spec::Brief;
 pub(crate) const MAX_PROPORTION: f64 = 2.4;
 /// A notch in the outline shorter than this is a stagger without a reason, m.
 pub(crate) const MIN_NOTCH_M: f64 = 1.5;
+/// The same of a home, m: a narrow one is a shaft between two rooms.
+const MIN_NOTCH_AT_HOME_M: f64 = 2.4;
 
 /// How many times longer than wide a court is at most.
 const MOST_COURT: f64 = 3.0;
@@ -56,6 +58,8 @@ pub(crate) struct Layout {
     pub bar: bool,
     /// How much too long a corridor with one way out is, m.
     pub one_way: f64,
+    /// True where the stairs are right beside the only end of the hall that has a wall to outdoors.
+    pub stairs_at_door: bool,
     /// Where the core is: its corner at the corridor, along the corridor, away from it.
     pub core: Option<Frame>,
     /// How the wings stand, in a building of wings.
@@ -86,10 +90,12 @@ pub(crate) fn door_need(clear_m: f64) -> i32 {
 
 /// Returns the corridor's width between wall center lines, lattice units.
 pub(crate) fn spine_units(brief: &Brief) -> i32 {
-    // wings and courtyards put outer walls on both sides
-    let width = up(brief.spine_width + 2.0 * OUTER_HALF_M);
+    // wings and courtyards put outer walls on both sides; the hall of a home has rooms along one at least
+    let walls = OUTER_HALF_M + if brief.for_homes { INNER_HALF_M } else { OUTER_HALF_M };
+    let width = up(brief.spine_width + walls);
     // The entrance door stands in the corridor's end wall, between two corners with outer walls.
-    let entered = brief.spine.is_some_and(|s| brief.rooms[s].entrance) || brief.second_exit || brief.upper;
+    let upper = brief.upper && !brief.for_homes;
+    let entered = brief.spine.is_some_and(|s| brief.rooms[s].entrance) || brief.second_exit || upper;
     let least = if entered { width.max(door_need(brief.entrance_width) + 1) } else { width };
     least + nearest(brief.spine_extra)
 }
@@ -153,6 +159,7 @@ impl Task<'_, '_> {
 pub(crate) fn realize(brief: &Brief, genome: &Genome, scratch: &mut Scratch, layout: &mut Layout) {
     layout.boxes.clear();
     (layout.misfit, layout.notch, layout.one_way, layout.core) = (0.0, 0.0, 0.0, None);
+    layout.stairs_at_door = false;
     (layout.far, layout.round) = (None, None);
     layout.bar = matches!(genome.scheme, Scheme::Straight | Scheme::Capped);
     scratch.spans.clear();
@@ -216,12 +223,27 @@ fn straight(task: &mut Task<'_, '_>) {
     if gable.is_some() {
         second_stairs(task, len, w);
     }
+    task.layout.stairs_at_door = stairs_at_door(brief, task.layout.core.as_ref(), caps.map(|c| c.is_some()), len);
     for (side, cap) in caps.iter().enumerate() {
         let Some((cap, width)) = cap else { continue };
         let (y0, y1) =
             (if cap.cover == Cover::Top { 0 } else { -db }, if cap.cover == Cover::Bottom { w } else { w + dt });
         let (x0, x1) = if side == 0 { (-width, 0) } else { (len, len + width) };
         task.layout.boxes.push((cap.room, Cellbox::new(x0, y0, x1, y1)));
+    }
+}
+
+/// Returns true where a straight hall of a home is entered at one end and the stairs are within a leaf's swing of it.
+fn stairs_at_door(brief: &Brief, core: Option<&Frame>, [west, east]: [bool; 2], len: i32) -> bool {
+    let Some((frame, core)) = core.zip(brief.core.as_ref()).filter(|_| brief.of_home && !brief.upper) else {
+        return false;
+    };
+    let leaf = up(Brief::opening(brief.entrance_width) + JAMB_M);
+    let (from, to) = (frame.origin.0, frame.origin.0 + core.width);
+    match (west, east) {
+        (false, true) => from < leaf,
+        (true, false) => to > len - leaf,
+        _ => false,
     }
 }
 
@@ -496,8 +518,9 @@ fn fill(task: &mut Task<'_, '_>, row: &Row<'_>, len: i32) {
     let gap = meters(len - total);
     if gap > 0.0 {
         task.layout.notch += gap;
-        if gap < MIN_NOTCH_M {
-            task.misfit += gap.min(MIN_NOTCH_M - gap).max(0.05);
+        let least = if task.brief.for_homes { MIN_NOTCH_AT_HOME_M } else { MIN_NOTCH_M };
+        if gap < least {
+            task.misfit += gap.min(least - gap).max(0.05);
         }
     } else if gap < 0.0 {
         task.misfit -= gap;

@@ -20,6 +20,8 @@ use crate::changes::{LOOK, PATIENCE, change_depth, change_nest, mutate, patience
 /// Steps of one run per room, of a small plan and of others, and the runs at most.
 const STEPS_OF_SMALL: usize = 100;
 const STEPS_PER_ROOM: usize = 150;
+/// The same of a storey of a home: few rooms around stairs that stand where they stand on the others, with as short a hall as can be.
+const STEPS_ON_STOREY: usize = 400;
 const MAX_RUNS: usize = 24;
 /// Steps of one run at most.
 const MAX_STEPS: usize = 12_000;
@@ -96,6 +98,11 @@ fn search_freely(
     compose(brief, &weights, rng, stop)
 }
 
+/// Returns true for a storey of a home with stairs.
+fn is_home_storey(brief: &Brief) -> bool {
+    brief.of_home && brief.core.is_some()
+}
+
 /// Returns the best sound plan of a large building in one body: every scheme that suits it is looked at, for what a corridor
 /// costs depends on the rooms; the seed's first choice may cost a little more.
 fn search_whole(
@@ -146,7 +153,7 @@ pub(crate) fn search_with(
     let tiny = brief.rooms.len() <= TINY;
     let (own_runs, more) = if tiny { (OWN_RUNS / 2, MAX_RUNS / 2) } else { (OWN_RUNS, MORE) };
     // what a hall takes of a storey of a home, or of a plot between neighbors, depends most on how the rooms lie along it
-    let compared = brief.party.is_some() || brief.of_home && brief.core.is_some();
+    let compared = brief.party.is_some() || is_home_storey(brief);
     let own_runs = if compared && !tiny { 1 } else { own_runs };
     for run in 0..MAX_RUNS {
         // The first choice of the seed gets most runs; the others step in when it does not work out.
@@ -210,7 +217,11 @@ fn anneal(
     rng: &mut Stream,
     stop: Stop<'_>,
 ) -> (Genome, Candidate) {
-    let per_room = if brief.rooms.len() > SMALL || !easy { STEPS_PER_ROOM } else { STEPS_OF_SMALL };
+    let per_room = match brief.rooms.len() > SMALL || !easy {
+        _ if is_home_storey(brief) => STEPS_ON_STOREY,
+        true => STEPS_PER_ROOM,
+        false => STEPS_OF_SMALL,
+    };
     let steps = (per_room * brief.rooms.len()).clamp(600, MAX_STEPS);
     let (mut scratch, mut layout) = (Scratch::default(), Layout::default());
     let mut value = |genome: &Genome, most: f64| {

@@ -33,8 +33,11 @@ const ACCESSIBLE_DOOR_M: f64 = 0.9;
 
 /// Advice widens a corridor by this factor at most: what asks for more is about another kind of corridor.
 const MOST_ADVISED_WIDTH: f64 = 1.4;
-/// The same in a home of several storeys.
-const MOST_ADVISED_WITH_STAIRS: f64 = 1.1;
+/// The same in a home of several storeys, whose halls have no floor to spare.
+const MOST_ADVISED_WITH_STAIRS: f64 = 1.0;
+/// Hall of a storey of a home for each square meter of its rooms, and the height of a storey before it is known, m.
+const HALL_BESIDE_ROOMS: f64 = 0.1;
+const USUAL_STOREY_M: f64 = 2.8;
 /// Advice widens a door by this much at most, m.
 const MOST_ADVISED_DOOR_M: f64 = 0.1;
 /// Share by which the area aimed for differs from seed to seed, what one room has more of it by itself and many share,
@@ -255,7 +258,8 @@ impl Brief {
         }
         let hard_width = limits.corridor_m(&domain.circulation);
         // a home with stairs has little floor left for wide halls, unless somebody turns a wheelchair there
-        let of_home = !graph.links.is_empty() && is_for_homes(domain);
+        let for_homes = is_for_homes(domain);
+        let of_home = !graph.links.is_empty() && for_homes;
         let most_advised = if of_home && !graph.accessible { MOST_ADVISED_WITH_STAIRS } else { MOST_ADVISED_WIDTH };
         let advised_width = limits.corridor_width_advised.unwrap_or(0.0).min(most_advised * hard_width);
         let fitted = fitted_width(graph);
@@ -273,9 +277,8 @@ impl Brief {
             apart: Vec::new(),
             aloof: aloof(graph, domain),
             second_exit: domain.circulation.second_exit && graph.rooms.iter().all(|r| r.level == 0),
-            // a storey of a home has the area of its rooms
             area: match graph.area_m2 {
-                Some(_) if of_home => Some(graph.rooms.iter().map(|r| r.target_area_m2).sum()),
+                Some(_) if of_home => Some(storey_m2(graph, domain)),
                 area => area.filter(|_| graph.links.is_empty()),
             },
             symmetry: graph.style.symmetry,
@@ -291,13 +294,13 @@ impl Brief {
             of_home,
             carries: 0.0,
             core: None,
-            for_homes: is_for_homes(domain),
+            for_homes,
             garden: Vec::new(),
             attached: None,
             party: None,
         };
         brief.find_guests();
-        if let Some(building) = domain.building_types.iter().find(|b| graph.building_type.as_ref() == Some(&b.id)) {
+        if let Some(building) = graph.building_type.as_deref().and_then(|id| domain.building_type(id)) {
             brief.stand(building);
         }
         let asked = |(i, room): (usize, &GraphRoom)| (room.garden_door && !brief.upper).then_some(i);
@@ -522,6 +525,16 @@ impl Brief {
             _ => self.rooms[a].door_width.min(self.rooms[b].door_width),
         }
     }
+}
+
+/// Returns the area that a storey of a home has by what its rooms are to have: with a hall as short as they allow, and its stairs.
+fn storey_m2(graph: &SceneGraph, domain: &Domain) -> f64 {
+    let rooms: f64 = graph.rooms.iter().filter(|r| !r.circulation).map(|r| r.target_area_m2).sum();
+    let stairs = domain.circulation.storeys.as_ref().map_or(0.0, |s| {
+        let (width, depth) = s.stairs.size_m(USUAL_STOREY_M);
+        width * depth * graph.rooms.iter().filter(|r| r.room_type == s.stairs.room_type).count() as f64
+    });
+    (1.0 + HALL_BESIDE_ROOMS) * rooms + stairs
 }
 
 /// Returns the part of the corridor that one comes to through a door from the other.

@@ -21,8 +21,9 @@ use super::search::search;
 use super::spec::{Brief, RoomSpec};
 use super::{ATTEMPTS, LONGEST_BAR, net_area_m2, schemes};
 
-/// Share of a storey that may jut out over the one below without a word.
+/// Share of a storey that may jut out over the one below, and from which on it is said.
 pub(crate) const OVERHANG_SHARE: f64 = 0.06;
+const TOLD_SHARE: f64 = 0.02;
 /// Share that may while there are few plans to compare, and how many are few.
 const LITTLE_OVERHANG: f64 = 0.04;
 const FEW_PLANS: usize = 3;
@@ -39,7 +40,7 @@ const STACKS_OF_OTHERS: usize = 3;
 const JUTS: f64 = 3.0;
 const SET_BACK: f64 = 0.3;
 const NOTCHED: f64 = 0.3;
-const USUAL_WAY: f64 = 0.2;
+const USUAL_WAY: f64 = 0.15;
 const LONG_WAY: f64 = 0.6;
 /// Longest storey, about, that is one bar between two stairs, m: others walk less in wings.
 const LONGEST_BAR_M: f64 = 64.0;
@@ -399,7 +400,7 @@ fn stacked(graph: &SceneGraph, planned: Vec<Planned>, numbers: &[i32], heights: 
         links: graph.links.clone(),
     };
     for (storey, &level) in planned.into_iter().zip(numbers) {
-        if storey.overhang > OVERHANG_SHARE {
+        if storey.overhang > TOLD_SHARE {
             out.conflicts.push(overhang_note(level, storey.overhang));
         }
         add(&mut out, storey.plan.moved(-west, -south), level);

@@ -9,6 +9,7 @@ mod make;
 mod scope;
 mod solids;
 pub(crate) mod tones;
+mod unwrap;
 
 pub use solids::triangulate;
 use std::collections::BTreeMap;

@@ -16,9 +16,8 @@ const SAFETY: f64 = 1.1;
 /// N m or N.
 const ROLLING: f64 = 0.02;
 const LEAST: f64 = 0.01;
-/// Inertia that engines add to a joint, kg m^2 or kg: the smallest lids, pushed as hard as a door, stay within what a step of
-/// theirs can follow.
-pub const ARMATURE: f64 = 0.005;
+/// Inertia that engines add to a joint that turns by 1 rad or goes 1 m: kg m^2 or kg.
+const ARMATURE: f64 = 0.015;
 /// Least damping of a drive that turns something, N m s/rad: the smallest lids, pushed as hard as a door, stop at their limit.
 const LEAST_TURNING: f64 = 0.2;
 /// How many ranges long a spring is drawn that pulls evenly.
@@ -32,6 +31,8 @@ const UPRIGHT: f64 = 0.999;
 /// How far a joint is looked at that has no limits: rad, and m.
 const ALL_ROUND: [f64; 2] = [0.0, std::f64::consts::TAU];
 
+/// How far above the floor a part of a thing still stands on it, m.
+const STANDS_M: f64 = 0.005;
 /// Most joints above and below one whose ends are looked at together.
 const RELATED: usize = 4;
 
@@ -124,6 +125,13 @@ fn drive(weight: &Weight, joint: &Joint) -> Drive {
     Drive { push, friction: weight.friction(weight.left(|_| push)), damping: weight.damping.max(least) }
 }
 
+/// Returns the inertia that engines add to a joint with these limits, kg m^2 or kg: levers and lids, pushed as hard as a door,
+/// stay within what a step of theirs can follow. The shorter the way, the sooner its end is there.
+pub fn armature(limits: Option<[f64; 2]>) -> f64 {
+    let range = limits.map_or(1.0, |[low, high]| (high - low).clamp(0.01, 1.0));
+    ARMATURE / range
+}
+
 /// Returns how a joint of a model resists.
 pub fn of(model: &Model3d, joint: &Joint) -> Dynamics {
     let bodies: Vec<Inertia> = model.bodies.iter().map(inertia).collect();
@@ -134,6 +142,18 @@ pub fn of(model: &Model3d, joint: &Joint) -> Dynamics {
         spring(&weight.alone).filter(|s| joint.limits.is_some() && none > weight.idle && weight.left(pull(*s)) < none);
     let left = spring.map_or(none, |s| weight.left(pull(s)));
     Dynamics { friction: weight.friction(left), idle: weight.idle, damping: weight.damping, spring }
+}
+
+/// Returns the bodies of a model that bear it where it stands: its root, wheels, and what reaches as far down as it does. All
+/// others are lids, drawers, lifts and the like, which need not meet the floor and the walls.
+pub fn bearing(model: &Model3d) -> BTreeSet<usize> {
+    let lowest = |bodies: &[usize]| {
+        let shapes = bodies.iter().filter_map(|b| model.bodies.get(*b)).flat_map(|b| &b.collisions);
+        shapes.map(|s| s.bounds()[0][2]).fold(f64::MAX, f64::min)
+    };
+    let floor = lowest(&(0..model.bodies.len()).collect::<Vec<_>>());
+    let bears = |j: &&Joint| j.limits.is_none() || lowest(&bodies_moved(model, j)) < floor + STANDS_M;
+    std::iter::once(0).chain(model.joints.iter().filter(bears).map(|j| j.child)).collect()
 }
 
 /// Returns the bodies of a model whose weight springs balance, for engines that take weight away.
@@ -416,6 +436,25 @@ mod tests {
             .map(|pose| most(&loads(&moved(&model, &second, &plain(&model)), &second, pose)))
             .fold(f64::MIN, f64::max);
         assert!(tilted > most(&alone) * 1.05, "tilted it weighs more: {tilted}, {}", most(&alone));
+    }
+
+    #[test]
+    fn what_reaches_the_floor_bears_a_model_and_lids_do_not() {
+        let (mut model, lid) = flap(JointKind::Revolute, [0.0, 1.0, 0.0], Some([0.0, 1.6]));
+        assert_eq!(bearing(&model), BTreeSet::from([0]));
+        let wheel = Body { collisions: vec![Collision::Sphere { center: [0.0; 3], radius: 0.1 }], ..Body::default() };
+        model.bodies.extend([wheel.clone(), wheel]);
+        model.joints.push(Joint { child: 2, kind: JointKind::Continuous, limits: None, ..lid.clone() });
+        model.joints.push(Joint { child: 3, ..lid });
+        assert_eq!(bearing(&model), BTreeSet::from([0, 2]), "a wheel bears it wherever it is");
+        model.bodies[3].collisions = vec![Collision::Box { min: [0.0, 0.0, -1.0], max: [0.1; 3] }];
+        assert_eq!(bearing(&model), BTreeSet::from([0, 2, 3]), "and a leg that folds");
+    }
+
+    #[test]
+    fn the_shorter_the_way_the_more_inertia_a_joint_is_given() {
+        let [button, lid, drawer] = [0.003, 1.4, 0.4].map(|range| armature(Some([0.0, range])));
+        assert!(button > drawer && drawer > lid && lid == armature(None), "{button} {drawer} {lid}");
     }
 
     #[test]

@@ -91,6 +91,13 @@ pub enum Pattern {
     Plain,
 }
 
+impl Pattern {
+    /// Returns whether it runs along things: boards, wood, brushed metal.
+    pub fn has_grain(self) -> bool {
+        matches!(self, Self::Planks | Self::Grain | Self::Brushed)
+    }
+}
+
 /// The pictures of a finish as PNG files, row 0 at the top.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pictures {

@@ -4,6 +4,7 @@
 //! the middle of the footprint on the underside (of a wall object: in the middle of its box's underside too).
 
 pub mod builds;
+pub mod coarse;
 pub mod dynamics;
 pub mod error;
 pub mod finish;

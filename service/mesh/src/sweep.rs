@@ -36,6 +36,11 @@ impl Block {
         }
     }
 
+    /// Returns the box with this much more on each side, m.
+    pub fn grown(&self, by_m: f64) -> Self {
+        Self { half_m: self.half_m.map(|h| h + by_m), ..*self }
+    }
+
     /// Returns the box of a model that stands at a place, turned about z.
     pub fn placed(&self, at_m: Vec3, yaw_rad: f64) -> Self {
         let up = [0.0, 0.0, 1.0];

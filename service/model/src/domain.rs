@@ -210,6 +210,11 @@ impl Domain {
     pub fn program(&self, id: &str) -> Option<&Program> {
         self.programs.iter().find(|p| p.id == id)
     }
+
+    /// Returns the kind of building with this id.
+    pub fn building_type(&self, id: &str) -> Option<&BuildingType> {
+        self.building_types.iter().find(|b| b.id == id)
+    }
 }
 
 impl Document for Domain {

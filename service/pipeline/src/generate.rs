@@ -169,6 +169,9 @@ pub fn furnish_and_check(
     cancelled: &AtomicBool,
 ) -> Result<Generated, Error> {
     let plugin = plugin_of(registry, graph)?;
+    let pinned = settings.pinned_floorplan.is_some() || settings.pinned_placements.is_some();
+    let gathered = if pinned { None } else { give_way::gathered(graph, plugin.domain()) };
+    let graph = gathered.as_ref().unwrap_or(graph);
     let read = || brief::of_plan(&graph.prompt, settings.pinned_floorplan.as_ref(), registry);
     let settings = &Settings { brief: settings.brief.clone().or_else(read), ..settings.clone() };
     let mut made = |graph: &SceneGraph, settings: &Settings| {

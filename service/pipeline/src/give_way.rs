@@ -2,9 +2,10 @@
 //! beside each other, and at last the second staircase. The world says each of it.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
-use d3dgen_model::domain::Domain;
-use d3dgen_model::scene_graph::{BY_PROMPT, BY_STYLE, GraphRoom, Note, Robot, SceneGraph};
+use d3dgen_model::domain::{Domain, Zone};
+use d3dgen_model::scene_graph::{BY_PROMPT, BY_STYLE, Connector, GraphEdge, GraphRoom, Note, Robot, SceneGraph};
 use d3dgen_model::storeys::{LinkKind, VerticalLink};
 
 /// Shares by which rooms may be smaller and larger than was meant; none is smaller than its type allows.
@@ -12,6 +13,9 @@ const SMALLER: f64 = 0.85;
 const LARGER: f64 = 1.35;
 /// Most over least area up to which the prompt gives the area in figures.
 const TOLD: f64 = 1.3;
+
+/// Rooms of one kind that are entered through the same room, at most: its walls have no place for more.
+const MOST_BEHIND: usize = 3;
 
 /// One thing that gives way; `None` where a graph has nothing of that kind.
 type Step = fn(&SceneGraph, &Domain) -> Option<SceneGraph>;
@@ -26,6 +30,50 @@ pub(crate) fn steps<'g>(graph: &'g SceneGraph, domain: &'g Domain) -> impl Itera
         last = Cow::Owned(next.clone());
         Some(next)
     })
+}
+
+/// Returns the graph with one room for all of a kind that serve the room they are entered through, where they are too many for its
+/// walls: six showers behind one changing room are a room of six.
+pub(crate) fn gathered(graph: &SceneGraph, domain: &Domain) -> Option<SceneGraph> {
+    let mut out = graph.clone();
+    for host in graph.rooms.iter().filter(|r| !r.circulation) {
+        let mut kinds: BTreeMap<&str, Vec<&GraphRoom>> = BTreeMap::new();
+        let serves = |r: &GraphRoom| domain.room_type_or_generic(&r.room_type).zone == Zone::Service;
+        for room in graph.rooms.iter().filter(|r| !r.locked && serves(r) && is_behind(graph, r, host)) {
+            kinds.entry(&room.room_type).or_default().push(room);
+        }
+        for rooms in kinds.into_values().filter(|rooms| rooms.len() > MOST_BEHIND) {
+            gather(&mut out, host, &rooms, domain);
+        }
+    }
+    (out.rooms.len() < graph.rooms.len()).then_some(out)
+}
+
+/// Returns true for a room that is entered through a host alone.
+fn is_behind(graph: &SceneGraph, room: &GraphRoom, host: &GraphRoom) -> bool {
+    let walkable = |e: &&GraphEdge| e.required && matches!(e.connector, Connector::Door | Connector::Open);
+    let mut ways = graph.edges.iter().filter(walkable).filter(|e| e.a == room.id || e.b == room.id);
+    let first = ways.next();
+    first.is_some_and(|e| e.a == room.id && e.b == host.id) && ways.next().is_none()
+}
+
+/// Puts the first of some rooms in the place of all.
+fn gather(out: &mut SceneGraph, host: &GraphRoom, rooms: &[&GraphRoom], domain: &Domain) {
+    let most = domain.room_type_or_generic(&rooms[0].room_type).area_m2.max;
+    let sum = |of: fn(&GraphRoom) -> f64| rooms.iter().map(|r| of(r)).sum::<f64>().min(most);
+    let (area, largest) = (sum(|r| r.target_area_m2), sum(|r| r.area_range_m2[1]));
+    let people: u32 = rooms.iter().filter_map(|r| r.occupants).fold(0, u32::saturating_add);
+    let gone = |id: &String| rooms[1..].iter().any(|r| &r.id == id);
+    out.rooms.retain(|r| !gone(&r.id));
+    out.edges.retain(|e| !gone(&e.a) && !gone(&e.b));
+    out.apart.retain(|pair| !pair.iter().any(gone));
+    let Some(room) = out.rooms.iter_mut().find(|r| r.id == rooms[0].id) else { return };
+    (room.target_area_m2, room.area_range_m2[1]) = (area, largest.max(area));
+    room.occupants = (people > 0).then_some(people);
+    let (count, kind) = (rooms.len(), &rooms[0].name);
+    let message =
+        format!("{count} rooms like {kind} have no place at the walls of {}; they are one of {area:.0} m2", host.name);
+    out.conflicts.push(Note { code: "rooms_gathered".into(), message });
 }
 
 /// Returns the graph with one corridor for all instead of one behind a lock.
@@ -113,6 +161,45 @@ mod tests {
 
     use super::*;
     use crate::scene_graph::{Request, generate};
+
+    #[test]
+    fn rooms_that_a_host_has_no_walls_for_become_one() {
+        let registry = Registry::builtin();
+        let prompt =
+            "A gym with a changing room for men and one for women, each with six showers, and a bouldering hall";
+        let request = Request { prompt: prompt.into(), seed: 1, ..Request::default() };
+        let mut graph = generate(&request, &registry).expect("the prompt is plain");
+        let domain = registry.get(&graph.domain).expect("it is built in").domain();
+        let host = graph.rooms.iter().find(|r| r.room_type == "locker_room").expect("it is named").clone();
+        let shower = |n: usize| GraphRoom {
+            id: format!("shower_{n}"),
+            room_type: "changing_showers".into(),
+            target_area_m2: 8.0,
+            ..host.clone()
+        };
+        graph.rooms.retain(|r| r.room_type != "changing_showers");
+        graph.edges.retain(|e| !e.a.starts_with("changing_showers") && !e.b.starts_with("changing_showers"));
+        let door = |n: usize| GraphEdge {
+            a: format!("shower_{n}"),
+            b: host.id.clone(),
+            connector: Connector::Door,
+            required: true,
+            reason: "test".into(),
+        };
+        let with = |n: usize| {
+            let mut graph = graph.clone();
+            graph.rooms.extend((0..n).map(shower));
+            graph.edges.extend((0..n).map(door));
+            graph
+        };
+        assert_eq!(gathered(&with(3), domain), None);
+        let one = gathered(&with(6), domain).expect("six are too many");
+        let left: Vec<&GraphRoom> = one.rooms.iter().filter(|r| r.id.starts_with("shower_")).collect();
+        assert_eq!(left.len(), 1);
+        assert!((left[0].target_area_m2 - 40.0).abs() < 1e-9, "{}", left[0].target_area_m2);
+        assert_eq!(one.check(), vec![]);
+        assert!(one.conflicts.iter().any(|n| n.code == "rooms_gathered"));
+    }
 
     #[test]
     fn each_step_gives_up_more_and_says_so() {

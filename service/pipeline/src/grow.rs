@@ -14,6 +14,8 @@ const MOST: f64 = 2.0;
 /// Share of a room's floor that grows with its places, by round: the way in and the stage do not, but where that was too little
 /// the rows leave more over than they fill.
 const FOR_PLACES: [f64; ROUNDS] = [0.8, 1.1];
+/// Least and greatest area of a room that grew, as shares of the one that it aims for.
+const NEAR: [f64; 2] = [0.9, 1.3];
 /// Code of the note that names the rooms that grew.
 const GREW: &str = "rooms_grew";
 /// Most over least area up to which the prompt gives the area in figures: such a room stays.
@@ -32,11 +34,7 @@ pub(crate) fn with_more_floor(graph: &SceneGraph, short: &[Short], round: usize)
     for room in out.rooms.iter_mut().filter(open) {
         let Some(short) = short.iter().find(|s| s.room_id == room.id) else { continue };
         let ratio = f64::from(short.wanted) / f64::from(short.have.max(1));
-        let factor = (1.0 + FOR_PLACES[round] * (ratio - 1.0)).clamp(LEAST, MOST);
-        let tenth = |area: f64| (10.0 * area).round() / 10.0;
-        let [low, high] = room.area_range_m2;
-        room.target_area_m2 = tenth(factor * room.target_area_m2);
-        room.area_range_m2 = [low.max(tenth(0.9 * room.target_area_m2)), high.max(tenth(1.3 * room.target_area_m2))];
+        enlarge(room, (1.0 + FOR_PLACES[round] * (ratio - 1.0)).clamp(LEAST, MOST));
         grown.push(room.name.clone());
     }
     if grown.is_empty() {
@@ -46,6 +44,15 @@ pub(crate) fn with_more_floor(graph: &SceneGraph, short: &[Short], round: usize)
     let message = format!("larger than first meant, for the places that were asked for: {}", grown.join(", "));
     out.assumptions.push(Note { code: GREW.into(), message });
     Some(out)
+}
+
+/// Makes a room aim for `factor` times its area, and lets it have that.
+pub(crate) fn enlarge(room: &mut GraphRoom, factor: f64) {
+    let tenth = |area: f64| (10.0 * area).round() / 10.0;
+    let [low, high] = room.area_range_m2;
+    room.target_area_m2 = tenth(factor * room.target_area_m2);
+    let [least, most] = NEAR.map(|share| tenth(share * room.target_area_m2));
+    room.area_range_m2 = [low.max(least), high.max(most)];
 }
 
 /// Returns how many places the rooms are short of.

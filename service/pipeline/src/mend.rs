@@ -3,9 +3,13 @@
 //!
 //! Another seed deals the same rooms anew; where each deal breaks the same rule at the same room, the graph is at fault.
 
+use std::collections::BTreeSet;
+
 use d3dgen_model::report::{Report, Violation};
 use d3dgen_model::scene_graph::{BY_CIRCULATION, Connector, GraphEdge, GraphRoom, Note, Robot, SceneGraph};
 use d3dgen_model::world::World;
+
+use crate::grow::enlarge;
 
 /// Factor by which the floor of a room grows that lacks an object.
 const MORE_FLOOR: f64 = 1.35;
@@ -21,15 +25,17 @@ pub(crate) fn mended(graph: &SceneGraph, report: &Report) -> Option<SceneGraph> 
     }
     let mut out = graph.clone();
     let mut changed = false;
+    // however many things a room lacks, it grows once
+    let mut grown: BTreeSet<&str> = BTreeSet::new();
     for broken in violations(report) {
         let note = match broken.code.as_str() {
             "private_passage" => own_door(&mut out, &broken.subject),
-            "object_missing" => more_floor(&mut out, &broken.subject),
+            "object_missing" if grown.insert(&broken.subject) => more_floor(&mut out, &broken.subject),
             "storey_in_the_air" => more_below(&mut out, broken),
             _ => None,
         };
         changed |= note.is_some();
-        // two things may be missing in a room, and a storey that was not large enough yet grows again
+        // what was not large enough yet grows again
         let new = note.filter(|n| !out.conflicts.contains(n));
         out.conflicts.extend(new);
     }
@@ -87,7 +93,7 @@ fn own_door(graph: &mut SceneGraph, id: &str) -> Option<Note> {
 /// Gives a room more floor for what does not fit in it.
 fn more_floor(graph: &mut SceneGraph, id: &str) -> Option<Note> {
     let room = graph.rooms.iter_mut().find(|r| r.id == id && !r.locked)?;
-    grow(room, MORE_FLOOR);
+    enlarge(room, MORE_FLOOR);
     let message = format!("{} is larger than meant, for what has to stand in it", room.name);
     Some(Note { code: "room_larger".into(), message })
 }
@@ -99,16 +105,9 @@ fn more_below(graph: &mut SceneGraph, broken: &Violation) -> Option<Note> {
     let factor = (1.0 + BELOW * broken.measured?).min(MOST_BELOW);
     let mut rooms = graph.rooms.iter_mut().filter(|r| r.level == below && !r.circulation && !r.locked).peekable();
     rooms.peek()?;
-    rooms.for_each(|room| grow(room, factor));
+    rooms.for_each(|room| enlarge(room, factor));
     let message = format!("the rooms of level {below} are larger than meant, for level {level} to stand on them");
     Some(Note { code: "storey_larger".into(), message })
-}
-
-fn grow(room: &mut GraphRoom, factor: f64) {
-    let tenth = |area: f64| (10.0 * area).round() / 10.0;
-    let [low, high] = room.area_range_m2;
-    room.target_area_m2 = tenth(factor * room.target_area_m2);
-    room.area_range_m2 = [tenth(factor * low), tenth(factor * high)];
 }
 
 /// Takes a room out, with what is entered through it alone.
@@ -173,6 +172,13 @@ mod tests {
         let larger = mend("object_missing", "bedroom_1", None).expect("it may grow");
         let area = |g: &SceneGraph| g.room("bedroom_1").expect("it is there").target_area_m2;
         assert!(area(&larger) > 1.3 * area(graph));
+        let twice = {
+            let mut report = broken(&made.report, "object_missing", "bedroom_1", None);
+            let another = report.rules[0].violations[0].clone();
+            report.rules[0].violations.push(another);
+            mended(graph, &report).expect("it may grow")
+        };
+        assert_eq!(area(&twice), area(&larger), "two things are missing in one room");
         let below = mend("storey_in_the_air", "level 1", Some(0.1)).expect("there is a storey below");
         assert!((area(&below) / area(graph) - 1.15).abs() < 0.02);
         for next in [door, larger, below] {

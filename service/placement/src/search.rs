@@ -730,7 +730,12 @@ impl<'j, 'a, 's> Pass<'j, 'a, 's> {
             }
             candidates.retain(|c| c.in_corner || !in_corner);
             candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
-            let open = choose(state, &candidates, rank, whole.map(|_| false), tally);
+            // a bed has its head under a window where no other wall takes it
+            let (under, clear): (Vec<Candidate>, Vec<Candidate>) =
+                candidates.drain(..).partition(|c| state.lies_under_window(&c.placed));
+            let open = choose(state, &clear, rank, whole.map(|_| false), tally)
+                .or_else(|| choose(state, &under, rank, whole.map(|_| false), tally));
+            candidates = [clear, under].concat();
             match open {
                 // who comes in a wheelchair needs that floor more
                 Some(found) if lit.is_none() && !self.job.step_free && state.lies_under_window(&found.0) => {

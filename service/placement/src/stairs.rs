@@ -40,7 +40,7 @@ pub(crate) fn flights(plan: &Floorplan, room: &PlanRoom, domain: &Domain) -> Opt
     let door = plan.doors_of(&room.room_id).next()?;
     let net = clear(room);
     let (middle, center) = (door.line.middle(), net.center());
-    let landing = rules.landing_m;
+    let landing = rules.floor_before_m();
     // the front of the flights looks at the door
     let (rect, yaw_rad) = match (door.line.is_vertical(), middle.x < center.x, middle.y < center.y) {
         (true, true, _) => (Rect { x0: net.x0 + landing, ..net }, PI),

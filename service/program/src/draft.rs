@@ -181,8 +181,8 @@ impl<'r, 'a> Draft<'r, 'a> {
         if self.site.lives {
             homes::add_studio(&mut wishes, program, domain);
             wishes.closed.extend(compounds::closed_rooms(tokens, mentions, domain, spoken));
-            wishes.enter_through_halls(domain);
         }
+        wishes.enter_through_halls(domain, self.site.lives);
         wishes.open = compounds::open_rooms(tokens, mentions, domain, spoken);
         let dining = &words().dwelling.dining;
         let eats = self.site.lives && compounds::eats_where_one_lives(tokens, mentions, spoken);
@@ -218,8 +218,7 @@ impl<'r, 'a> Draft<'r, 'a> {
 
     /// Wishes for what storeys have and need.
     pub(super) fn furnish_storeys(&mut self, storeys: &mut Storeys) {
-        let kind = self.site.building.building_type.as_ref();
-        let kind = self.site.domain.building_types.iter().find(|b| Some(&b.id) == kind);
+        let kind = self.site.building.building_type.as_deref().and_then(|id| self.site.domain.building_type(id));
         if kind.is_some_and(|b| b.attached == Some(Attached::Flat)) {
             self.notes.assumptions.extend(storey_wishes::lie_on_one_storey(storeys, self.site.domain));
         }

@@ -57,7 +57,7 @@ impl<'d> Known<'d> {
     /// Returns what a domain and a kind of building in it know; nothing for a building that no domain knows.
     pub fn of(registry: &'d Registry, domain: Option<&str>, building_type: Option<&str>) -> Self {
         let Some(plugin) = domain.and_then(|d| registry.get(d)) else { return Self::default() };
-        let kind = plugin.domain().building_types.iter().find(|b| Some(b.id.as_str()) == building_type);
+        let kind = building_type.and_then(|id| plugin.domain().building_type(id));
         let program = kind.and_then(|b| plugin.domain().program(&b.program));
         Self {
             program,

@@ -42,7 +42,7 @@ pub(super) struct Kinds<'a> {
 impl<'a> Kinds<'a> {
     /// Returns what they stand for in a building of that kind.
     pub fn of(domain: &'a Domain, building_type: Option<&str>) -> Self {
-        let kind = domain.building_types.iter().find(|b| Some(b.id.as_str()) == building_type);
+        let kind = building_type.and_then(|id| domain.building_type(id));
         let program = kind.and_then(|b| domain.program(&b.program));
         Self { domain, means: program.map(|p| &p.means) }
     }

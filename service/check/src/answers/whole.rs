@@ -45,7 +45,7 @@ impl Asked<'_> {
         let graph = &self.world.scene_graph;
         let level = graph.rooms.first().map(|r| r.level);
         let on_one_storey = graph.rooms.iter().all(|r| Some(r.level) == level);
-        let kind = self.domain.building_types.iter().find(|b| Some(&b.id) == graph.building_type.as_ref());
+        let kind = graph.building_type.as_deref().and_then(|id| self.domain.building_type(id));
         let attached = kind.and_then(|b| b.attached);
         let (kept, reason) = match asked.kind {
             SiteKind::Inside => {
@@ -123,7 +123,7 @@ impl Asked<'_> {
     /// Returns how many rooms there are as people count those of such a building: those to sleep in of a hotel.
     fn rooms_counted(&self, rooms: &[&GraphRoom]) -> u32 {
         let kind = self.world.scene_graph.building_type.as_deref();
-        let kind = self.domain.building_types.iter().find(|b| Some(b.id.as_str()) == kind);
+        let kind = kind.and_then(|id| self.domain.building_type(id));
         let counted = kind.and_then(|b| self.domain.program(&b.program)).and_then(|p| p.means.get(GENERIC_ROOM_TYPE));
         rooms.iter().filter(|r| counted.is_none_or(|id| r.room_type.starts_with(id.as_str()))).count() as u32
     }

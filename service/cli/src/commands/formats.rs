@@ -1,5 +1,7 @@
 //! The flags that say which files to write of a world, shared by `generate` and `export`.
 
+use std::path::PathBuf;
+
 use d3dgen_export::Subject;
 use d3dgen_export::exporters::{self, File, plan};
 use d3dgen_export::manifest::{self, Manifest};
@@ -11,6 +13,7 @@ use crate::database::StoreArgs;
 use crate::error::Error;
 use crate::interrupt;
 use crate::output::Output;
+use crate::shelf::Shelf;
 
 /// Flags for formats.
 #[derive(clap::Args, Clone)]
@@ -21,6 +24,9 @@ pub struct FormatArgs {
     /// Leave out plan.png, which takes longer than all the rest
     #[arg(long)]
     no_png: bool,
+    /// Folder in which models are kept once for many worlds; those of a world are hard links to it
+    #[arg(long, value_name = "DIR")]
+    models: Option<PathBuf>,
 }
 
 /// The formats chosen.
@@ -28,6 +34,7 @@ pub struct Formats {
     names: Vec<&'static str>,
     png: bool,
     kept: Kept,
+    shelf: Option<Shelf>,
 }
 
 /// Returns the names of the formats that are written where none is named.
@@ -38,20 +45,22 @@ pub fn usual() -> Vec<String> {
 impl FormatArgs {
     /// Returns the flags for these formats, pictures and all.
     pub fn with_png(format: Vec<String>) -> Self {
-        Self { format, no_png: false }
+        Self { format, no_png: false, models: None }
     }
 
     /// Returns the flags for these formats, plan.png left out.
     pub fn without_png(format: Vec<String>) -> Self {
-        Self { format, no_png: true }
+        Self { format, no_png: true, models: None }
     }
 
     /// Returns the formats, each once, with the models of the database of assets.
     ///
     /// # Errors
-    /// `Input` with the formats there are; `Assets` when the database is damaged.
+    /// `Input` with the formats there are; `Assets` when the database is damaged; `Write` when the folder of models cannot be
+    /// made.
     pub fn chosen(&self, store: &StoreArgs) -> Result<Formats, Error> {
-        Ok(Formats { names: self.names()?, png: self.png(), kept: Kept::of(store)? })
+        let shelf = self.models.as_deref().map(Shelf::at).transpose()?;
+        Ok(Formats { names: self.names()?, png: self.png(), kept: Kept::of(store)?, shelf })
     }
 
     /// Returns the names of the formats, each once.
@@ -90,8 +99,11 @@ impl Formats {
                 exporter.export(&subject)?
             };
             manifest.add(exporter, &files);
-            for File { path, bytes } in files {
-                output.write(&path, &bytes)?;
+            for file in files {
+                match self.shelf.as_ref().filter(|_| file.is_shared()) {
+                    Some(shelf) => output.link(&file.path, &shelf.place(&file)?)?,
+                    None => output.write(&file.path, &file.bytes)?,
+                }
             }
         }
         let File { path, bytes } = manifest.file(output.earlier(manifest::FILE).as_deref());

@@ -44,7 +44,7 @@ impl Exporter for Arena {
             return Err(Error::Unsupported { exporter: "arena", subject: world.name.clone(), reason });
         }
         let root = format!("arena/worlds/{}", world.name);
-        let models = UsedModels::of(world)?;
+        let models = UsedModels::of(world, domain, kept)?;
         let storeys = world.storeys();
         let ground = storeys.iter().find(|(level, _)| *level == 0).map_or(world, |(_, storey)| storey);
         let default = yaml::to_string(&scenario::scenario(ground));

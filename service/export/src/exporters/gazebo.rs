@@ -9,8 +9,9 @@ mod building;
 mod doors;
 mod ros;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
+use d3dgen_mesh::coarse;
 use d3dgen_mesh::writers;
 use d3dgen_mesh::writers::number::n;
 use serde_json::json;
@@ -83,9 +84,14 @@ fn labels(scene: &SimScene) -> BTreeMap<&str, usize> {
 /// Returns the `model://` folder of a model: one rigid body that an include may fix.
 fn folder(model: &SimModel, scene: &SimScene) -> Result<Vec<File>, Error> {
     let id = &model.id;
-    let mut own = (*model.model).clone();
+    let mut own = d3dgen_mesh::model3d::welded(&model.model);
     own.name.clone_from(id);
+    own.bodies.iter_mut().for_each(|b| b.name.clone_from(id));
     let index = scene.models.iter().position(|m| m.id == *id);
+    if !index.is_some_and(|i| bears_things(scene, i)) {
+        // The parser and the engine take their time for each shape.
+        own.bodies.iter_mut().for_each(|b| b.collisions = coarse::few(std::mem::take(&mut b.collisions)));
+    }
     let first = scene.objects.iter().find(|o| Some(o.model) == index);
     let friction = first.map_or(0.5, |o| o.friction);
     if first.is_some_and(|o| !o.collides) {
@@ -104,6 +110,12 @@ fn folder(model: &SimModel, scene: &SimScene) -> Result<Vec<File>, Error> {
         vec![File::new(format!("{at}/model.config"), xml.finish()), File::new(format!("{at}/model.sdf"), text)];
     files.extend(meshes.into_iter().map(|f| File::new(format!("{at}/meshes/{}", f.name), f.bytes)));
     Ok(files)
+}
+
+/// Returns whether anything stands on an instance of a model, whose top then is where it is.
+fn bears_things(scene: &SimScene, model: usize) -> bool {
+    let supports: BTreeSet<&str> = scene.objects.iter().filter_map(|o| o.support.as_deref()).collect();
+    scene.objects.iter().any(|o| o.model == model && supports.contains(o.id.as_str()))
 }
 
 fn document(scene: &SimScene, labels: &BTreeMap<&str, usize>) -> String {

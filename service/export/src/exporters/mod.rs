@@ -10,6 +10,9 @@ mod rmf;
 mod tasks;
 mod usd;
 
+use data_encoding::HEXLOWER;
+use sha2::{Digest, Sha256};
+
 use crate::scene::SimScene;
 use crate::{Error, Subject};
 
@@ -25,6 +28,8 @@ pub use usd::Usd;
 
 /// Name of all formats together.
 const ALL: &str = "all";
+/// Folders of what worlds share.
+const SHARED: [&str; 3] = ["models", "textures", "Object"];
 /// Letters of a name that a refusal repeats.
 const NAME_SHOWN: usize = 60;
 
@@ -41,6 +46,17 @@ impl File {
     /// Returns a file.
     pub fn new(path: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
         Self { path: path.into(), bytes: bytes.into() }
+    }
+
+    /// Returns the SHA-256 of its contents, lower-case hex.
+    pub fn sha256(&self) -> String {
+        HEXLOWER.encode(&Sha256::digest(&self.bytes))
+    }
+
+    /// Returns true for a file of a model or a surface, which is the same in every world that uses it.
+    pub fn is_shared(&self) -> bool {
+        let mut folders = self.path.split('/').rev().skip(1);
+        folders.any(|folder| SHARED.contains(&folder))
     }
 }
 
@@ -149,6 +165,14 @@ mod tests {
             refused.starts_with("format `blend` is not known; there are ") && refused.contains("nav2"),
             "{refused}"
         );
+    }
+
+    #[test]
+    fn what_worlds_share_is_told_from_what_is_a_worlds_own() {
+        let is_shared = |path: &str| File::new(path, "").is_shared();
+        assert!(is_shared("mujoco/models/Desk/Desk.obj") && is_shared("usd/textures/oak.png"));
+        assert!(!is_shared("mujoco/world.xml") && !is_shared("models") && !is_shared("gltf/models.glb"));
+        assert!(File::new("a", "abc").sha256().starts_with("ba7816bf8f01cfea414140de5dae2223"));
     }
 
     #[test]

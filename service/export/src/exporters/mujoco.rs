@@ -8,7 +8,6 @@ mod bodies;
 mod building;
 mod meshes;
 
-use d3dgen_mesh::dynamics;
 use d3dgen_mesh::writers::number::n;
 
 use super::{Exporter, File};
@@ -18,6 +17,8 @@ use crate::{Error, Subject};
 
 /// Step of the simulation, s.
 const STEP_S: &str = "0.002";
+/// How a stop of a joint gives: in two steps, the fewest that the engine can follow, without swinging back.
+const HARD_STOP: &str = "0.004 1";
 
 /// Writes the MuJoCo world.
 pub struct Mujoco;
@@ -143,9 +144,10 @@ fn defaults(xml: &mut Xml) {
         xml.begin("default", &[("class", class.to_owned())]);
         xml.leaf("geom", &attributes);
         if class == "articulable" {
-            // Friction of joints is dry: the engine's usual one lets them creep.
+            // Friction of joints is dry, and their stops are hard: the engine's usual ones let them creep, and light lids go on.
             let dry = ("solimpfriction", "0.9999 0.9999 0.001 0.5 2".to_owned());
-            xml.leaf("joint", &[("armature", n(dynamics::ARMATURE)), dry]);
+            let hard = [("solimplimit", "0.99 0.999 0.001 0.5 2"), ("solreflimit", HARD_STOP)];
+            xml.leaf("joint", &[dry].into_iter().chain(hard.map(|(k, v)| (k, v.to_owned()))).collect::<Vec<_>>());
         }
         xml.end();
     }

@@ -28,7 +28,7 @@ pub(super) struct Things {
 
 /// Returns the things of a world.
 pub(super) fn all(place: &Place<'_>, kept: &dyn KeptModels, ids: &mut Ids) -> Result<Things, Error> {
-    let used = UsedModels::of(place.world)?;
+    let used = UsedModels::of(place.world, place.domain, kept)?;
     let models = models(place, &used, kept)?;
     let placements = &place.world.placements.placements;
     let given: Vec<String> = placements.iter().map(|p| ids.new_id(&p.placement_id)).collect();

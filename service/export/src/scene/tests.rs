@@ -210,3 +210,18 @@ fn what_rests_on_nothing_is_fixed_and_rugs_do_not_collide() {
     assert_eq!(without, ["rug"]);
     assert!(scene.objects.iter().all(|o| o.collides || o.mobility == Mobility::Fixed));
 }
+
+#[test]
+fn lamps_are_warm_or_cool_and_a_window_is_a_box_around_its_frame() {
+    let scene = scene(&sample::world());
+    let white = |kelvin: f64| SimLight { kelvin, ..scene.lights[0].clone() }.white();
+    let ([_, _, warm], [_, _, cool]) = (white(2700.0), white(6500.0));
+    assert!(warm < 0.75 && cool > 0.95, "{warm} {cool}");
+    let window = &scene.windows[0];
+    let (volume, whole) = (|b: &SimBox| b.half_m.iter().product::<f64>(), window.whole());
+    let top = |b: &SimBox| b.center_m[2] + b.half_m[2];
+    assert!(
+        window.frame.iter().chain([&window.glass]).all(|b| volume(b) < volume(&whole) && top(b) < top(&whole) + 1e-9)
+    );
+    assert!(window.frame.iter().any(|b| (top(b) - top(&whole)).abs() < 1e-9));
+}

@@ -122,16 +122,7 @@ impl View<'_> {
 
 /// Returns a window as a part, and where the middle of its foot is.
 pub(crate) fn window_part(window: &SimWindow) -> (Part<'static>, [f64; 3]) {
-    let glass = &window.glass;
-    let (sin, cos) = glass.yaw_rad.sin_cos();
-    let mut half = glass.half_m;
-    for b in &window.frame {
-        let [dx, dy, dz]: [f64; 3] = std::array::from_fn(|i| b.center_m[i] - glass.center_m[i]);
-        half[0] = half[0].max((cos * dx + sin * dy).abs() + b.half_m[0]);
-        half[1] = half[1].max(b.half_m[1]);
-        half[2] = half[2].max(dz.abs() + b.half_m[2]);
-    }
-    let [x, y, z] = glass.center_m;
+    let SimBox { center_m: [x, y, z], half_m: half, .. } = window.whole();
     let part = Part { object: "window", size_m: half.map(|v| 2.0 * v), color: "#f2f1ee", material: "plastic" };
     (part, [x, y, z - half[2]])
 }

@@ -1,8 +1,8 @@
 //! Convex shapes that collide: those of the parts, moved with them, and merged when a body has too many.
 
 use super::solids::Hull;
-use crate::Collision;
 use crate::affine::{Affine, Vec3, cross, length, unit};
+use crate::{Collision, coarse};
 
 /// Most convex shapes of one body.
 pub(super) const MOST: usize = 24;
@@ -53,31 +53,7 @@ fn frame_along(direction: Vec3) -> [Vec3; 3] {
     [direction, second, cross(direction, second)]
 }
 
-/// Merges the shapes of a body until there are few enough: each time the two whose common box adds least.
-pub(super) fn merged(mut shapes: Vec<Collision>) -> Vec<Collision> {
-    while shapes.len() > MOST {
-        let boxes: Vec<[Vec3; 2]> = shapes.iter().map(Collision::bounds).collect();
-        let mut best = (f64::MAX, 0, 1);
-        for a in 0..boxes.len() {
-            for b in a + 1..boxes.len() {
-                let added = volume(&union(&boxes[a], &boxes[b])) - volume(&boxes[a]) - volume(&boxes[b]);
-                if added < best.0 {
-                    best = (added, a, b);
-                }
-            }
-        }
-        let (_, a, b) = best;
-        let [min, max] = union(&boxes[a], &boxes[b]);
-        shapes[a] = Collision::Box { min, max };
-        shapes.remove(b);
-    }
-    shapes
-}
-
-fn union(a: &[Vec3; 2], b: &[Vec3; 2]) -> [Vec3; 2] {
-    [std::array::from_fn(|i| a[0][i].min(b[0][i])), std::array::from_fn(|i| a[1][i].max(b[1][i]))]
-}
-
-fn volume(bounds: &[Vec3; 2]) -> f64 {
-    (0..3).map(|i| bounds[1][i] - bounds[0][i]).product()
+/// Merges the shapes of a body until there are few enough.
+pub(super) fn merged(shapes: Vec<Collision>) -> Vec<Collision> {
+    coarse::merged(shapes, |count, _| count > MOST)
 }

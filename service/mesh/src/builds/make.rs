@@ -7,10 +7,10 @@ use super::bodies::Bodies;
 use super::scope::{Local, Scope};
 use super::solids::{self, Detail, Frame, Hull, Made};
 use super::tones::{self, Look};
-use super::{collide, copies};
+use super::{collide, copies, unwrap};
 use crate::affine::Affine;
 use crate::surface::Surface;
-use crate::{Body, Error, Joint, Mesh, Model3d, Visual};
+use crate::{Body, Error, Joint, Material, Model3d, Visual};
 
 /// How far a build may miss its size: a share of the extent, and m for thin things.
 const MISS: (f64, f64) = (0.02, 0.0005);
@@ -321,7 +321,7 @@ fn assemble(
         }
         let visuals = surfaces.into_iter().map(|(material, surface)| Visual {
             name: model.materials[material].name.to_lowercase(),
-            mesh: mesh(&surface.moved(fit)),
+            mesh: unwrap::mesh(&surface.moved(fit), has_grain(&model.materials[material])),
             material: Some(material),
         });
         let mass_kg = ((masses[b] * factor).max(0.005) * 1e4).round() / 1e4;
@@ -334,6 +334,11 @@ fn assemble(
     }
     unique_names(&mut model);
     Ok(model)
+}
+
+/// Returns whether a material has a direction, as wood has.
+fn has_grain(material: &Material) -> bool {
+    material.worn().is_some_and(|finish| finish.pattern.has_grain())
 }
 
 /// Gives materials of one name numbers.
@@ -351,26 +356,4 @@ fn unique_names(model: &mut Model3d) {
             }
         }
     }
-}
-
-/// Turns a surface into single precision with texture coordinates in meters, projected along the nearest axis.
-fn mesh(surface: &Surface) -> Mesh {
-    let single = |v: f64| if v.abs() < 1e-9 { 0.0 } else { v as f32 };
-    let positions: Vec<[f32; 3]> = surface.positions.iter().map(|p| p.map(single)).collect();
-    let normals: Vec<[f32; 3]> = surface.normals.iter().map(|n| n.map(single)).collect();
-    let uvs = surface.positions.iter().zip(&surface.normals).map(|(p, n)| {
-        let axis = (0..3).max_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs())).unwrap_or(2);
-        match axis {
-            0 => [single(p[1] * n[0].signum()), single(p[2])],
-            1 => [single(-p[0] * n[1].signum()), single(p[2])],
-            _ => [single(p[0]), single(p[1] * n[2].signum())],
-        }
-    });
-    let uvs = uvs.collect();
-    let distinct = |t: &&[u32; 3]| {
-        let [a, b, c] = t.map(|i| positions[i as usize]);
-        a != b && b != c && c != a
-    };
-    let triangles = surface.triangles.iter().filter(distinct).copied().collect();
-    Mesh { positions, normals, uvs, triangles }
 }

@@ -350,6 +350,10 @@ pub struct Stairs {
     pub flight_width_m: f64,
     /// Depth of the landings, m.
     pub landing_m: f64,
+    /// Depth of the stairwell's own floor before the first step, m: less than a landing where it is open to a hall that serves as
+    /// one; a landing when absent.
+    #[serde(default)]
+    pub before_m: Option<f64>,
     /// Greatest rise of a step, m.
     pub rise_m: f64,
     /// Going of a step, m.
@@ -389,7 +393,12 @@ impl Stairs {
     /// Returns the clear width and depth of the stairwell for floors this far apart, m.
     pub fn size_m(&self, height_m: f64) -> (f64, f64) {
         let treads = f64::from(self.rises(height_m) / 2 - 1);
-        (2.0 * self.flight_width_m + WELL_M, 2.0 * self.landing_m + treads * self.going_m)
+        (2.0 * self.flight_width_m + WELL_M, self.floor_before_m() + self.landing_m + treads * self.going_m)
+    }
+
+    /// Returns the depth of the floor between the way into the stairwell and its first step, m.
+    pub fn floor_before_m(&self) -> f64 {
+        self.before_m.unwrap_or(self.landing_m)
     }
 }
 

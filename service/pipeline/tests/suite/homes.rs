@@ -198,7 +198,7 @@ fn nothing_but_what_one_washes_with_stands_on_washing_machines() {
             on.for_each(|p| assert_eq!(p.object, "detergent", "{prompt}, seed {}", world.floorplan.seed));
         }
     }
-    most("homes with a washing machine", 0.7, &held);
+    most("homes with a washing machine", 0.65, &held);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //! dock for one robot, an entrance that opens inwards.
 
 use d3dgen_model::Rect;
+use d3dgen_model::floorplan::PlanRoom;
 use d3dgen_model::world::World;
 use d3dgen_plugins::Registry;
 
@@ -38,6 +39,47 @@ fn rooms_with_water_lie_beside_each_other() {
     }
     let share = f64::from(beside) / f64::from(all);
     assert!(share >= 0.75, "{beside} of {all} rooms with water lie beside another");
+}
+
+/// Homes of two storeys and more whose floor area the prompt gives, with that, m^2.
+const LARGE_AS_ASKED: [(&str, f64); 5] = [
+    ("Two-storey family house in Sweden, 140 m2, four bedrooms, two bathrooms, open kitchen and living room", 140.0),
+    (
+        "Einfamilienhaus mit zwei Stockwerken, 120 m2: unten Wohnzimmer, Küche, Gäste-WC; oben drei Schlafzimmer und ein Bad",
+        120.0,
+    ),
+    ("Terraced house, three storeys, 110 m2, three bedrooms, two bathrooms, kitchen-diner", 110.0),
+    ("villa su due piani con quattro camere, tre bagni, soggiorno grande, cucina, lavanderia, 200 m2", 200.0),
+    ("casa de dos plantas de 100 m2 con tres dormitorios, un baño, cocina y salón", 100.0),
+];
+
+fn floor(world: &World, of: fn(&PlanRoom) -> bool) -> f64 {
+    world.floorplan.rooms.iter().filter(|r| of(r)).map(|r| r.net_area_m2).sum()
+}
+
+#[test]
+fn halls_and_stairs_take_little_of_a_home_of_two_storeys() {
+    let share = |(prompt, area): &(&str, f64)| {
+        let made = worlds(prompt, 4);
+        made.iter().map(|world| floor(world, |r| r.circulation) / area).sum::<f64>() / made.len() as f64
+    };
+    let two: Vec<f64> =
+        LARGE_AS_ASKED.iter().filter(|(prompt, _)| !prompt.contains("three storeys")).map(share).collect();
+    let mean = two.iter().sum::<f64>() / two.len() as f64;
+    assert!(mean < 0.22, "{:.1} % of the floor asked for are hall and stairs", 100.0 * mean);
+}
+
+#[test]
+fn homes_are_hardly_larger_than_asked_for() {
+    let of_one_storey = [
+        ("Bungalow for a retired couple using a wheelchair, 85 m2, two bedrooms, one accessible bathroom", 85.0),
+        ("maison de 95 m2 de plain-pied avec trois chambres, un séjour, une cuisine et un bureau", 95.0),
+    ];
+    let mut held = Vec::new();
+    for (prompt, area) in LARGE_AS_ASKED.into_iter().chain(of_one_storey) {
+        held.extend(worlds(prompt, 4).iter().map(|world| floor(world, |_| true) <= 1.15 * area));
+    }
+    most("homes of 15 % more floor than asked for at most", 0.9, &held);
 }
 
 #[test]

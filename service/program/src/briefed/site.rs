@@ -10,7 +10,7 @@ pub(super) fn in_a_row(brief: &Brief, domain: &Domain, building_type: Option<&st
     if !brief.asks.iter().any(|ask| row(&ask.fact)) {
         return None;
     }
-    let own = domain.building_types.iter().find(|b| Some(b.id.as_str()) == building_type)?;
+    let own = domain.building_type(building_type?)?;
     let same = |b: &&BuildingType| b.attached == Some(Attached::Row) && b.program == own.program;
     domain.building_types.iter().filter(|_| own.attached.is_none()).find(same).map(|b| b.id.clone())
 }

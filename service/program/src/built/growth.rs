@@ -23,7 +23,7 @@ const MOST_BY_AREA: usize = 60;
 const CIRCULATION_SHARE: f64 = 0.14;
 
 /// Share of the net area that the halls of a home of several storeys take, its stairs aside.
-const HALLS_SHARE: f64 = 0.11;
+const HALLS_SHARE: f64 = 0.09;
 
 /// Height of a storey as stairs are reckoned with before it is known, m.
 const STOREY_M: f64 = 2.8;
@@ -31,8 +31,10 @@ const STOREY_M: f64 = 2.8;
 /// Most of the net area of a home that its stairs are reckoned to take.
 const MOST_STAIRS: f64 = 0.2;
 
-/// What rooms need beyond their least area before a building counts as too small for them, as a factor.
+/// What rooms need beyond their least area before a building counts as too small for them, as a factor; more in a home, where nobody
+/// wants the smallest of all rooms for one that was not asked for.
 const TIGHT: f64 = 1.1;
+const TIGHT_AT_HOME: f64 = 1.25;
 
 /// Returns the share of the net area that goes to corridors: none where a hall takes their part.
 pub(crate) fn circulation_share(reading: &Reading, rooms: &[Planned]) -> f64 {
@@ -412,12 +414,19 @@ impl<'r, 'a> Build<'r, 'a> {
         }
     }
 
+    /// Returns the least area of all rooms together, net m^2: who uses a wheelchair needs more of some.
+    fn least_m2(&self) -> f64 {
+        let step_free = |k: &RoomType| if self.reading.accessible { k.step_free_m2.min(k.area_m2.max) } else { 0.0 };
+        self.rooms.iter().map(|r| r.area_m2.unwrap_or_else(|| r.kind.area_m2.min.max(step_free(r.kind)))).sum()
+    }
+
     /// Drops or adds rooms until the usual sizes fit an area, net m^2.
     fn fit_area(&mut self, area: f64) {
         let sum = |build: &Self, size: fn(&RoomType) -> f64| {
             build.rooms.iter().map(|r| r.area_m2.unwrap_or_else(|| size(r.kind))).sum::<f64>()
         };
-        while sum(self, |k| TIGHT * k.area_m2.min) > area {
+        let tight = if is_dwelling(self.program) { TIGHT_AT_HOME } else { TIGHT };
+        while tight * self.least_m2() > area {
             // what comes last in the program goes first
             let spare = |&i: &usize| !self.rooms[i].requested && !vital::is_vital(self.reading, &self.rooms, i);
             let Some(last) = (0..self.rooms.len()).rev().find(spare) else { break };

@@ -38,6 +38,8 @@ const MOST_SCALE: f64 = 100.0;
 const COMPACT: f64 = 0.8;
 /// The same of a generous building.
 const GENEROUS: f64 = 1.25;
+/// Most of the area of a living room that a bedroom is given by the program.
+const SLEPT_IN: f64 = 0.9;
 /// Largest share of its usual area that a bedroom has.
 const MOST_ASLEEP: f64 = 1.6;
 /// Share by which the areas may miss the one asked for before that is worth a note.
@@ -308,7 +310,10 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
         let middle = 0.5 * (low + high);
         if sum_at(middle, roomy) < budget { low = middle } else { high = middle }
     }
-    let scaled = at(high, roomy);
+    let mut scaled = at(high, roomy);
+    if lives {
+        live_in_the_largest(planned, &mut scaled);
+    }
     let sum: f64 = scaled.iter().sum();
     if (sum - budget).abs() > AREA_TOLERANCE * budget {
         let reachable = sum / for_rooms;
@@ -323,6 +328,19 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
         reading.conflicts.push(Note::new("area_not_reachable", message));
     }
     scaled.into_iter().map(tenth).collect()
+}
+
+/// Lets the living room of a home be larger than its bedrooms: it gets what they have more of it, as far as both may change.
+fn live_in_the_largest(planned: &[Planned], areas: &mut [f64]) {
+    let of = |zone: Zone| (0..planned.len()).filter(move |&i| planned[i].kind.zone == zone);
+    let open = |i: &usize| planned[*i].area_m2.is_none();
+    let Some(day) = of(Zone::Day).max_by(|&a, &b| areas[a].total_cmp(&areas[b])).filter(open) else { return };
+    for bed in of(Zone::Night).filter(open) {
+        let most = (SLEPT_IN * areas[day]).max(planned[bed].kind.area_m2.min);
+        let spare = (areas[bed] - most).max(0.0).min((planned[day].kind.area_m2.max - areas[day]).max(0.0));
+        areas[bed] -= spare;
+        areas[day] += spare;
+    }
 }
 
 /// Returns how much larger than usual rooms of a zone become in a home with floor to spare, as a factor.

@@ -82,7 +82,7 @@ impl Class<'_> {
 /// Returns true where a room of this type that was taken out of the graph was the last of a kind that no such building is
 /// without, or the last with a toilet.
 pub fn is_missed(graph: &SceneGraph, room_type: &str, domain: &Domain) -> bool {
-    let building = domain.building_types.iter().find(|b| graph.building_type.as_ref() == Some(&b.id));
+    let building = graph.building_type.as_deref().and_then(|id| domain.building_type(id));
     let own = domain.programs.iter().find(|p| building.is_some_and(|b| b.program == p.id));
     let Some(program) = own.or(domain.programs.first()) else { return false };
     let of_all = if is_dwelling(program) {

@@ -42,7 +42,7 @@ pub(crate) fn plan(
         if mentions.iter().any(|m| m.span.overlaps(part.span)) {
             continue;
         }
-        let kind = domain.building_types.iter().find(|b| part.domain == domain.id && b.id == part.building_type);
+        let kind = domain.building_type(&part.building_type).filter(|_| part.domain == domain.id);
         let own = kind.and_then(|b| domain.program(&b.program)).filter(|p| p.id != program.id);
         let Some(own) = own else {
             let same = kind.is_some();

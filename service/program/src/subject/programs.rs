@@ -18,7 +18,7 @@ pub(crate) fn is_dwelling(program: &Program) -> bool {
 /// Returns the program of a building type, else the first of the domain.
 pub(crate) fn program_of<'a>(domain: &'a Domain, building_type: Option<&str>) -> &'a Program {
     building_type
-        .and_then(|id| domain.building_types.iter().find(|b| b.id == id))
+        .and_then(|id| domain.building_type(id))
         .and_then(|b| domain.program(&b.program))
         .or_else(|| domain.programs.first())
         .expect("a domain's check demands a program")

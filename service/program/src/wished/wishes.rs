@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use d3dgen_model::domain::{Domain, Zone};
+use d3dgen_model::domain::{Domain, Privacy, RoomType, Zone};
 use d3dgen_model::scene_graph::{Connector, Note};
 
 use super::relations::{Relation, Said, Spread};
@@ -126,11 +126,13 @@ impl Wishes {
 }
 
 impl Wishes {
-    /// Lets one enter a home through its halls: "a bike store near the front door" only says where that is.
-    pub(crate) fn enter_through_halls(&mut self, domain: &Domain) {
+    /// Lets one enter a home through its halls, and another building through what is for anybody: "a bike store near the front door",
+    /// "resuscitation by the ambulance entrance" only say where that is.
+    pub(crate) fn enter_through_halls(&mut self, domain: &Domain, lives: bool) {
         let halls = &domain.circulation;
         let hall = |id: &String| {
-            let circulates = domain.room_type(id).is_some_and(|k| k.zone == Zone::Circulation);
+            let received = |k: &RoomType| !lives && (k.zone == Zone::Public || k.privacy == Privacy::Public);
+            let circulates = domain.room_type(id).is_some_and(|k| k.zone == Zone::Circulation || received(k));
             circulates || *id == halls.room_type || halls.entrance_room_types.contains(id)
         };
         let (entrance, near) = std::mem::take(&mut self.entrance).into_iter().partition(hall);

@@ -14,7 +14,8 @@ fn files() -> Vec<File> {
 
 fn level() -> Value {
     let world = sample::world();
-    world_yaml::level(&world, &sample::domain(), &UsedModels::of(&world).unwrap()).unwrap()
+    world_yaml::level(&world, &sample::domain(), &UsedModels::of(&world, &sample::domain(), &NothingKept).unwrap())
+        .unwrap()
 }
 
 fn zones(level: &Value) -> &Vec<Value> {
@@ -24,18 +25,20 @@ fn zones(level: &Value) -> &Vec<Value> {
 #[test]
 fn the_bundle_has_every_file_arena_reads() {
     let paths: BTreeSet<String> = files().into_iter().map(|f| f.path).collect();
-    for path in [
-        "arena/worlds/sample_flat/0/world.yaml",
-        "arena/worlds/sample_flat/0/map.png",
-        "arena/worlds/sample_flat/0/map.yaml",
-        "arena/worlds/sample_flat/scenarios/default/scenario.yaml",
-        "arena/worlds/sample_flat/assets/Sample/Object/Double_Bed/annotation.yaml",
-        "arena/worlds/sample_flat/assets/Sample/Object/Double_Bed/Double_Bed.sdf/Double_Bed.sdf",
-        "arena/worlds/sample_flat/assets/Sample/Object/Double_Bed/Double_Bed.sdf/base.obj",
-        "arena/worlds/sample_flat/assets/Sample/Object/Double_Bed/Double_Bed.glb",
-        "arena/worlds/sample_flat/assets/Sample/Object/Double_Bed/Double_Bed.usdz",
-    ] {
-        assert!(paths.contains(path), "{path} is missing");
+    let world = sample::world();
+    let used = UsedModels::of(&world, &sample::domain(), &NothingKept).unwrap();
+    let mut expected: Vec<String> =
+        ["0/world.yaml", "0/map.png", "0/map.yaml", "scenarios/default/scenario.yaml"].map(str::to_owned).to_vec();
+    for placement in &world.placements.placements {
+        let reference = used.reference(placement).unwrap();
+        let (domain, name) = reference.split_once('/').unwrap();
+        let model =
+            ["annotation.yaml", &format!("{name}.sdf/{name}.sdf"), &format!("{name}.glb"), &format!("{name}.usdz")]
+                .map(|file| format!("assets/{domain}/Object/{name}/{file}"));
+        expected.extend(model);
+    }
+    for path in expected {
+        assert!(paths.contains(&format!("arena/worlds/sample_flat/{path}")), "{path} is missing");
     }
 }
 

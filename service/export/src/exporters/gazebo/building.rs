@@ -40,7 +40,7 @@ pub(super) fn lights(xml: &mut Xml, scene: &SimScene) {
         xml.begin("light", &[("type", "point".to_owned()), ("name", light.id.clone())]);
         let [x, y, z] = light.at_m.map(n);
         xml.text("pose", &[], &format!("{x} {y} {z} 0 0 0"));
-        let [r, g, b] = white_of(light.kelvin);
+        let [r, g, b] = light.white();
         xml.text("diffuse", &[], &format!("{} {} {} 1", n(r), n(g), n(b)));
         xml.text("cast_shadows", &[], "false");
         // luminous flux over the whole sphere, cd, against the 255 cd that make a room of usual size bright
@@ -52,14 +52,6 @@ pub(super) fn lights(xml: &mut Xml, scene: &SimScene) {
         xml.end();
         xml.end();
     }
-}
-
-/// Returns the color of a light, 1 in its strongest part: Tanner Helland's fit to the locus of black bodies.
-fn white_of(kelvin: f64) -> [f64; 3] {
-    let t = (kelvin / 100.0).clamp(10.0, 66.0);
-    let green = (99.470_802_586_1 * t.ln() - 161.119_568_166_1) / 255.0;
-    let blue = if t <= 19.0 { 0.0 } else { (138.517_731_223_1 * (t - 10.0).ln() - 305.044_792_730_7) / 255.0 };
-    [1.0, green, blue].map(|v| (v.clamp(0.0, 1.0) * 1e4).round() / 1e4)
 }
 
 /// Writes the static models.
@@ -78,8 +70,7 @@ pub(super) fn models(xml: &mut Xml, scene: &SimScene, labels: &BTreeMap<&str, us
         shown(xml, &wall.id, &shapes, WALL, labels.get("wall"));
     }
     for window in &scene.windows {
-        solid.push(window.glass);
-        solid.extend(&window.frame);
+        solid.push(window.whole());
         let frame: Vec<SimShape> = window.frame.iter().copied().map(SimShape::Box).collect();
         shown(xml, &format!("{}_frame", window.id), &frame, FRAME, labels.get("window"));
         shown(xml, &window.id, &[SimShape::Box(window.glass)], GLASS, labels.get("window"));

@@ -14,7 +14,9 @@ use crate::xml::Xml;
 /// Writes a thing.
 pub(super) fn thing(xml: &mut Xml, scene: &SimScene, object: &SimObject, rest: &mut Rest) {
     let Some(model) = scene.models.get(object.model) else { return };
-    let thing = Thing { object, model, looks: meshes::looks(model), balanced: dynamics::balanced(&model.model) };
+    let own = &model.model;
+    let (balanced, bearing) = (dynamics::balanced(own), dynamics::bearing(own));
+    let thing = Thing { object, model, looks: meshes::looks(model), balanced, bearing };
     thing.body(xml, 0, None, rest);
     let count = if thing.is_free() { model.model.bodies.len() } else { 0 };
     // The parts of one thing do not meet each other: those of a fixed thing by their class, these one by one.
@@ -26,7 +28,8 @@ pub(super) fn thing(xml: &mut Xml, scene: &SimScene, object: &SimObject, rest: &
 pub(super) fn passes(scene: &SimScene, rest: &mut Rest) {
     let thing = |object: usize| {
         let object = scene.objects.get(object)?;
-        Some(Thing { object, model: scene.models.get(object.model)?, looks: Vec::new(), balanced: BTreeSet::new() })
+        let (balanced, bearing) = (BTreeSet::new(), BTreeSet::new());
+        Some(Thing { object, model: scene.models.get(object.model)?, looks: Vec::new(), balanced, bearing })
     };
     for pass in &scene.passes {
         let (Some(own), Some(other)) = (thing(pass.object), thing(pass.other)) else { continue };
@@ -41,6 +44,8 @@ struct Thing<'a> {
     looks: Vec<Vec<Look<'a>>>,
     /// Bodies that gas springs and counterweights bear; the engine knows them as bodies without weight.
     balanced: BTreeSet<usize>,
+    /// Bodies that stand on the floor.
+    bearing: BTreeSet<usize>,
 }
 
 impl Thing<'_> {
@@ -119,6 +124,7 @@ impl Thing<'_> {
             ("type", kind.to_owned()),
             ("pos", list(&joint.origin)),
             ("axis", list(&joint.axis)),
+            ("armature", n(dynamics::armature(joint.limits))),
             ("damping", n(resists.damping)),
             ("frictionloss", n(if resists.spring.is_some() { resists.idle } else { resists.friction })),
         ];
@@ -132,10 +138,9 @@ impl Thing<'_> {
     fn collisions(&self, xml: &mut Xml, index: usize) {
         let class = match (index, self.is_free()) {
             (0, false) => "structural",
-            (0, true) => "dynamic",
-            (_, false) => "articulable",
-            // Wheels of what stands free carry it.
-            (_, true) => "dynamic",
+            // What stands free is carried by its wheels too.
+            (_, true) if self.bearing.contains(&index) => "dynamic",
+            (_, _) => "articulable",
         };
         for (k, shape) in self.model.model.bodies[index].collisions.iter().enumerate() {
             let mut attributes =

@@ -1,5 +1,6 @@
 //! The building as bodies: slabs, walls, doors, windows; lamps; places of robots as sites.
 
+use d3dgen_mesh::dynamics;
 use d3dgen_mesh::writers::number::{n, small};
 
 use super::{Rest, box_geom, list, shape_geom};
@@ -76,7 +77,7 @@ pub(super) fn lights(xml: &mut Xml, scene: &SimScene) {
             ("dir", "0 0 -1".to_owned()),
             ("cutoff", "80".to_owned()),
             ("attenuation", "0.5 0.2 0.1".to_owned()),
-            ("diffuse", list(&[share; 3])),
+            ("diffuse", list(&light.white().map(|v| v * share))),
             ("castshadow", "false".to_owned()),
         ];
         xml.leaf("light", &attributes);
@@ -151,6 +152,7 @@ fn leaf(xml: &mut Xml, door: &SimDoor, leaf: &SimLeaf, rest: &mut Rest) {
         ("type", if joint.hinge { "hinge" } else { "slide" }.to_owned()),
         ("axis", list(&joint.axis)),
         ("range", list(&joint.limits)),
+        ("armature", n(dynamics::armature(Some(joint.limits)))),
         ("damping", n(joint.damping)),
         ("frictionloss", n(joint.friction)),
     ];

@@ -39,3 +39,23 @@ fn key_frames_have_a_position_for_every_joint() {
     let given: Vec<usize> = all(&xml, "key", "qpos").iter().map(|q| q.split(' ').count()).collect();
     assert!(needed > 60 && given == [needed, needed], "{needed} {given:?}");
 }
+
+#[test]
+fn joints_stop_hard_and_the_shorter_their_way_the_more_inertia_they_are_given() {
+    let xml = xml();
+    let lines = xml.lines().map(str::trim_start).filter(|l| l.starts_with("<joint name="));
+    let value = |line: &str, key: &str| {
+        line.split_once(&format!(" {key}=\"")).and_then(|(_, v)| v.split('"').next().map(str::to_owned))
+    };
+    let mut given: Vec<(f64, f64)> = lines
+        .filter_map(|line| {
+            let range = value(line, "range")?;
+            let (low, high) = range.split_once(' ')?;
+            let span = high.parse::<f64>().ok()? - low.parse::<f64>().ok()?;
+            Some((span, value(line, "armature").expect("every joint has one").parse().ok()?))
+        })
+        .collect();
+    given.sort_by(|a, b| a.0.total_cmp(&b.0));
+    assert!(given.len() > 10 && given.windows(2).all(|w| w[0].1 >= w[1].1 - 1e-9), "{given:?}");
+    assert!(xml.contains(&format!("solreflimit=\"{HARD_STOP}\"")));
+}

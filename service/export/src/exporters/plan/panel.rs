@@ -70,7 +70,7 @@ pub(super) fn paper(width: f64, height: f64, scale: f64) -> Paper {
 /// Returns the plan's title: what the domain calls this kind of building.
 pub(super) fn title(world: &World, domain: &Domain) -> String {
     let id = world.scene_graph.building_type.as_deref();
-    let kind = id.and_then(|id| domain.building_types.iter().find(|b| b.id == id));
+    let kind = id.and_then(|id| domain.building_type(id));
     let program = kind.and_then(|b| domain.program(&b.program));
     program.map_or_else(|| domain.title.clone(), |p| p.title.clone())
 }

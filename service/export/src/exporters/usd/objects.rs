@@ -7,7 +7,7 @@ use d3dgen_mesh::world3d::yaw;
 use d3dgen_mesh::writers::ModelFile;
 use d3dgen_mesh::writers::usd::text::{Text, identifier, quoted, schemas};
 use d3dgen_mesh::writers::usd::{AssetFacts, asset_usda, base_name, body_names, pictures};
-use d3dgen_mesh::{Body, Model3d};
+use d3dgen_mesh::{Body, Model3d, dynamics};
 
 use crate::Error;
 use crate::scene::{Mobility, SimObject, SimScene};
@@ -74,19 +74,26 @@ impl Assets {
         self.0.get(object.model).is_some_and(|m| !m.joints.is_empty())
     }
 
-    /// Returns the paths of what stands fast, and those of the doors and drawers of things that stand fast.
+    /// Returns the paths of what stands fast, and those of doors, drawers, lids and lifts of all things.
     pub fn fixed(&self, scene: &SimScene) -> [Vec<String>; 2] {
         let [mut still, mut moving] = [Vec::new(), Vec::new()];
-        for object in scene.objects.iter().filter(|o| o.mobility == Mobility::Fixed) {
+        for object in &scene.objects {
             let Some(model) = self.0.get(object.model) else { continue };
-            let place = format!("/World/Objects/{}", identifier(&object.id));
+            let (place, is_fixed) =
+                (format!("/World/Objects/{}", identifier(&object.id)), object.mobility == Mobility::Fixed);
             if model.joints.is_empty() {
-                still.push(place);
+                still.extend(is_fixed.then_some(place));
                 continue;
             }
-            let mut bodies = body_names(model).into_iter().map(|body| format!("{place}/{body}"));
-            still.extend(bodies.next());
-            moving.extend(bodies);
+            let bearing = dynamics::bearing(model);
+            for (k, body) in body_names(model).into_iter().enumerate() {
+                let path = format!("{place}/{body}");
+                match (k, is_fixed) {
+                    (0, true) => still.push(path),
+                    (_, false) if bearing.contains(&k) => {}
+                    (_, _) => moving.push(path),
+                }
+            }
         }
         [still, moving]
     }

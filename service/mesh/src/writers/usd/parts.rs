@@ -319,8 +319,9 @@ impl UsdJoint<'_> {
                 value(text, &format!("physxJointAxis:{drive}:{name}"), resists.friction);
             }
             value(text, "newton:friction", resists.friction);
-            value(text, &format!("physxJointAxis:{drive}:armature"), dynamics::ARMATURE);
-            value(text, "newton:armature", dynamics::ARMATURE);
+            let armature = dynamics::armature(self.limits);
+            value(text, &format!("physxJointAxis:{drive}:armature"), armature);
+            value(text, "newton:armature", armature);
             text.line("float newton:limitStiffness = inf");
         });
     }
