@@ -72,6 +72,10 @@ PROMPTS = {
 }
 
 
+# Radius of a robot of usual size, m.
+RADIUS_M = 0.25
+
+
 def last_json(command, timeout=1500):
     """Runs a check; returns what it printed last as JSON, and how long it took, s."""
     begun = time.monotonic()
@@ -97,7 +101,7 @@ class Consumer:
         facts = verdict.get("facts", {})
         codes = collections.Counter(f["code"] for f in verdict.get("failures", []))
         figures = {name: facts.get(key) for name, key in self.facts.items()}
-        return {"ok": verdict.get("ok", False), "seconds": seconds, "refused": codes["joint_blocked"] + codes["joint_limit"], "moved": codes["drift"] + codes["tilt"], **figures}
+        return {"ok": verdict.get("ok", False), "seconds": seconds, "refused": codes["joint_blocked"] + codes["joint_limit"], "moved": codes["drift"] + codes["tilt"], "codes": codes, **figures}
 
 
 def kit_python():
@@ -105,6 +109,12 @@ def kit_python():
     cache = Path(os.environ.get("SIM_ACCEPT_CACHE") or Path.home() / ".cache/sim-accept")
     own = cache / "venv/world/bin/python"
     return own if own.exists() else sys.executable
+
+
+def radius(world):
+    """Radius of the disc that has to pass, m: that of the world's smallest robot, at most RADIUS_M."""
+    robots = json.loads((world / "scenario.json").read_text()).get("robots", [])
+    return min([RADIUS_M, *(task["robot"]["radius_m"] for task in robots)])
 
 
 def consumers(kit):
@@ -123,8 +133,8 @@ def consumers(kit):
         Consumer("Newton", "usd", lambda w: [usd(w, "newton")], {**stepped("newton"), **sweep}),
         Consumer("SimReady Robotics-Prop 3.2", "usd", lambda w: [[*check("check_simready.py"), w / "usd/models"]], {}),
         Consumer("glTF (Khronos validator)", "gltf", lambda w: [["node", kit / "check_glb.mjs", *sorted((w / "gltf").glob("*.glb"))]], {}),
-        Consumer("nav2 (map, graph, masks)", "nav2", lambda w: [[*check("check_nav2.py"), w / "nav2", "--radius", "0.25"]], {}),
-        Consumer("Open-RMF (rmf_site_format)", "rmf", lambda w: [[*check("check_rmf.py"), b, "--radius", "0.25"] for b in sorted((w / "rmf").glob("*.building.yaml"))], {}),
+        Consumer("nav2 (map, graph, masks)", "nav2", lambda w: [[*check("check_nav2.py"), w / "nav2", "--radius", radius(w)]], {}),
+        Consumer("Open-RMF (rmf_site_format)", "rmf", lambda w: [[*check("check_rmf.py"), b, "--radius", radius(w)] for b in sorted((w / "rmf").glob("*.building.yaml"))], {}),
     ]
 
 
@@ -178,10 +188,19 @@ def row(title, results):
 SECTION = "## How they are judged"
 
 
-def page(before, rows, counts, took):
-    """The page with the section of figures written anew."""
+def refusals(results):
+    """What was refused, by consumer, in a line; nothing where nothing was."""
+    counts = {title: sum((r["codes"] for r in found), collections.Counter()) for title, found in results.items()}
+    said = [f"{title}: " + ", ".join(f"{code} {n}" for code, n in sorted(codes.items())) for title, codes in counts.items() if codes]
+    return [f"Refused, by the codes of the kit: {'; '.join(said)}.", ""] if said else []
+
+
+def page(before, rows, counts, took, refused):
+    """The page with the section of figures written anew; sections after it stay."""
     made, storeys, asked = counts
-    return before.split(SECTION)[0] + "\n".join(
+    head, _, old = before.partition(SECTION)
+    after = old.partition("\n## ")
+    return head + "\n".join(
         [
             SECTION,
             "",
@@ -196,13 +215,14 @@ def page(before, rows, counts, took):
             "*Stable*: in MuJoCo a thing that can be moved ends less than 5 cm from where it was in the three seconds after the first, as",
             "MolmoSpaces asks of its scenes; in Gazebo and Newton any body moves at most 2 cm and turns at most 0.05 rad in two seconds.",
             "*Joints*: pushed with 8 N m or 8 N to one limit, to the other and back, they cover nine tenths of their range; in MuJoCo those of",
-            "doors, in Newton all that there are. *Doorways*: a disc of 0.25 m radius, or what the narrowest door leaves, is carried through",
-            "the middle of each and along the routes of robots. *Rooms reached*: joined to the main entrance by open doorways. *Seconds*:",
-            "the check itself.",
+            "doors, in the others all that there are. *Doorways*: a disc of 0.25 m radius, or what the narrowest door leaves, is carried through",
+            "the middle of each and along the routes of robots. nav2 and Open-RMF: a disc as large as the smallest robot, at most 0.25 m.",
+            "*Rooms reached*: joined to the main entrance by open doorways. *Seconds*: the check itself.",
             "",
         ]
         + ([f"Making and writing a world took {statistics.median(took):.1f} s (median), with the start of the program.", ""] if took else [])
-    )
+        + refused
+    ) + after[1] + after[2]
 
 
 def worlds(given, formats):
@@ -278,7 +298,7 @@ def main():
     rows = [row(c.title, results[c.title]) for c in asked if results[c.title]]
     print("\n".join(rows))
     if given.table and rows:
-        given.table.write_text(page(given.table.read_text(), rows, (made, storeys, which(given)), took))
+        given.table.write_text(page(given.table.read_text(), rows, (made, storeys, which(given)), took, refusals(results)))
     print(f"simulators: {made} worlds, {len(asked)} consumers, {refused} refused")
     sys.exit(1 if refused or not rows else 0)
 

@@ -9,6 +9,9 @@ use serde_json::{Map, Value};
 /// the common ones, and its own.
 const USE: &str = "use";
 
+/// Key under which a domain says what rooms of one trade are in buildings of another: a checkout is a cash desk where nobody sells.
+const ELSEWHERE: &str = "elsewhere";
+
 /// Lists whose entries may be taken from the common ones.
 const SHARED: [&str; 2] = ["objects", "groups"];
 
@@ -118,6 +121,9 @@ pub fn texts<'a>(texts: impl Iterator<Item = (&'a str, &'a str)>, common: &Value
     for key in SHARED {
         take(key, &used, common, &mut whole, &mut files);
     }
+    if let Some(elsewhere) = whole.remove(ELSEWHERE) {
+        mean_elsewhere(&elsewhere, &mut whole);
+    }
     Ok(Merged { table: Value::Object(whole), files })
 }
 
@@ -181,6 +187,22 @@ fn take(
     }
 }
 
+/// Gives each program that has no rooms of a trade, and does not say what it means by them, what they are elsewhere.
+fn mean_elsewhere(elsewhere: &Value, whole: &mut Map<String, Value>) {
+    let pairs: Vec<(&String, &Value)> = elsewhere.as_object().into_iter().flatten().collect();
+    let programs = whole.get_mut("programs").and_then(Value::as_array_mut);
+    for program in programs.into_iter().flatten().filter_map(Value::as_object_mut) {
+        let rooms = program.get("rooms").and_then(Value::as_array).into_iter().flatten();
+        let listed: Vec<String> =
+            rooms.filter_map(|r| r.get("room_type").and_then(Value::as_str)).map(str::to_owned).collect();
+        let means = program.entry("means").or_insert_with(|| Value::Object(Map::new()));
+        let Some(means) = means.as_object_mut() else { continue };
+        for (trade, own) in pairs.iter().filter(|(trade, _)| !listed.contains(trade)) {
+            means.entry(trade.as_str()).or_insert_with(|| (*own).clone());
+        }
+    }
+}
+
 fn join(into: &mut Map<String, Value>, key: String, value: Value) -> Result<(), String> {
     match (into.get_mut(&key), value) {
         (None, value) => {
@@ -235,6 +257,18 @@ mod tests {
             None,
         ];
         assert_eq!(places.map(|p| found.place(p)), expected.map(|p| p.map(str::to_owned)));
+    }
+
+    #[test]
+    fn rooms_of_a_trade_are_others_where_a_program_has_none_of_them() {
+        let text = "[elsewhere]\ncheckout = \"cash_desk\"\n\
+            [[programs]]\nid = \"shop\"\nrooms = [{ room_type = \"checkout\" }]\n\
+            [[programs]]\nid = \"bakery\"\nmeans = { checkout = \"bakery_shop\" }\nrooms = []\n\
+            [[programs]]\nid = \"restaurant\"\nrooms = []\n";
+        let found = merged(&[("domain.toml", text)]).unwrap();
+        let means = |i: usize| found.table["programs"][i]["means"]["checkout"].clone();
+        assert_eq!([means(0), means(1), means(2)], [Value::Null, json!("bakery_shop"), json!("cash_desk")]);
+        assert!(found.table.get(ELSEWHERE).is_none());
     }
 
     #[test]

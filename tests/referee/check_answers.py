@@ -22,7 +22,7 @@ import tempfile
 import tomllib
 
 ROOT = pathlib.Path(__file__).parents[2]
-BED_FOR_TWO_M, BENCH_SEAT_M, SOFA_SEAT_M = 1.35, 0.55, 0.65
+BED_FOR_TWO_M, BUNK_BED_M, BENCH_SEAT_M, SOFA_SEAT_M = 1.35, 1.4, 0.55, 0.65
 AREA_MISS, ROOM_MISS = 0.15, 0.05
 DESK = re.compile(r"(^|_)(desk|workstation|console)$")
 SEAT = re.compile(r"chair|stool|bench|sofa|seat|couch|pew|armchair|bean_bag|cushion")
@@ -126,7 +126,7 @@ class World:
 
     def beds(self, rooms, sleepers=False):
         beds = [p for r in rooms for p in self.in_room(r) if BED.search(p["object"])]
-        return sum(2 if sleepers and p["size_m"][0] >= BED_FOR_TWO_M else 1 for p in beds)
+        return sum((1 + (p["size_m"][0] >= BED_FOR_TWO_M)) * (1 + (p["size_m"][2] >= BUNK_BED_M)) if sleepers else 1 for p in beds)
 
     def is_later(self, first, second):
         """Returns whether a wish names rooms again: by the same name alone, in another sentence, or within the words of another fact."""

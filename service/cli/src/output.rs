@@ -334,6 +334,21 @@ mod tests {
     }
 
     #[test]
+    fn what_is_kept_elsewhere_is_in_the_folder_and_stays_where_it_is_kept() {
+        let home = TempDir::new().unwrap();
+        let kept = home.path().join("kept");
+        fs::write(&kept, b"oak").unwrap();
+        let output = Output::new(&home.path().join("a")).unwrap();
+        output.link("usd/textures/oak.png", &kept).unwrap();
+        assert!(output.link("usd/lost.png", &home.path().join("none")).is_err());
+        output.write("report.json", b"{}").unwrap();
+        output.commit().unwrap();
+        assert_eq!(fs::read(home.path().join("a/usd/textures/oak.png")).unwrap(), b"oak");
+        fs::remove_dir_all(home.path().join("a")).unwrap();
+        assert_eq!(fs::read(&kept).unwrap(), b"oak");
+    }
+
+    #[test]
     fn an_earlier_output_is_replaced_whole() {
         let home = TempDir::new().unwrap();
         for names in [["report.json", "arena/a.yaml"], ["report.json", "plan.svg"]] {

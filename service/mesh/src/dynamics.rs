@@ -17,7 +17,7 @@ const SAFETY: f64 = 1.1;
 const ROLLING: f64 = 0.02;
 const LEAST: f64 = 0.01;
 /// Inertia that engines add to a joint that turns by 1 rad or goes 1 m: kg m^2 or kg.
-const ARMATURE: f64 = 0.01;
+const ARMATURE: f64 = 0.015;
 /// Least damping of a drive that turns something, N m s/rad: the smallest lids, pushed as hard as a door, stop at their limit.
 const LEAST_TURNING: f64 = 0.2;
 /// How many ranges long a spring is drawn that pulls evenly.

@@ -87,11 +87,16 @@ pub fn is_for_all(domain: &Domain, kind: &RoomType) -> bool {
         && !has(&[Shape::Shower, Shape::Bathtub])
 }
 
-/// Returns true for toilets that are made for people in wheelchairs.
+/// Returns true for toilets that are made for people in wheelchairs, whatever is asked for.
 pub fn is_accessible(domain: &Domain, kind: &RoomType) -> bool {
+    is_made_for_wheelchairs(domain, kind, false)
+}
+
+/// Returns true for toilets that people in wheelchairs can use; `step_free` where that is asked for, which some toilets wait for.
+fn is_made_for_wheelchairs(domain: &Domain, kind: &RoomType, step_free: bool) -> bool {
     let made_for = |line: &Furnishing| {
         let tagged = |id: &str| domain.object(id).is_some_and(|o| o.tags.iter().any(|t| t == ACCESSIBLE));
-        line.required && domain.objects_of(&line.item).any(tagged)
+        line.required && (step_free || !line.accessible) && domain.objects_of(&line.item).any(tagged)
     };
     is_for_all(domain, kind) && kind.furnishing.iter().any(made_for)
 }
@@ -167,7 +172,7 @@ pub fn without_accessible(graph: &SceneGraph, domain: &Domain) -> Vec<i32> {
     }
     levels.retain(|level| {
         let here = graph.rooms.iter().filter(|r| r.level == *level);
-        !here.clone().any(|r| is_accessible(domain, kind(r)))
+        !here.clone().any(|r| is_made_for_wheelchairs(domain, kind(r), graph.accessible))
     });
     levels.into_iter().collect()
 }

@@ -7,6 +7,7 @@ use d3dgen_knowledge::clearance::PROJECTION_M;
 use d3dgen_knowledge::{Aim, Clear};
 use d3dgen_model::TOLERANCE_M;
 use d3dgen_model::domain::{Domain, FacingRule, Group, Member, Mount, ObjectType, Relation, Shape};
+use d3dgen_model::measures::sleepers_in;
 
 use super::geom::{Box2, ROBOT_HEIGHT, Solid, mm};
 use super::seats::{is_seat, seats_around, seats_behind};
@@ -188,10 +189,10 @@ impl<'a> Unit<'a> {
         Some(finish_with(self.item, self.group, parts, self.clears.clone(), self.parked.clone()))
     }
 
-    /// Returns how many people can lie on the unit's beds: two on a wide one.
+    /// Returns how many people can lie on the unit's beds: two on a wide one, two in a bunk bed.
     pub fn beds(&self) -> u32 {
         let bed = |p: &&Part| matches!(p.object.shape, Shape::Bed | Shape::HospitalBed);
-        self.parts.iter().filter(bed).map(|p| 1 + u32::from(width_of(p) >= 1350)).sum()
+        self.parts.iter().filter(bed).map(|p| sleepers_in(size_of(p))).sum()
     }
 
     /// Returns how many desks the unit has.
@@ -238,6 +239,13 @@ impl<'a> Unit<'a> {
 
 fn width_of(part: &Part) -> i32 {
     if part.quarter.is_multiple_of(2) { part.solid.rect.height() } else { part.solid.rect.width() }
+}
+
+/// Returns width, depth and height of a part, m.
+fn size_of(part: &Part) -> [f64; 3] {
+    let turned = part.quarter.is_multiple_of(2);
+    let depth = if turned { part.solid.rect.width() } else { part.solid.rect.height() };
+    [width_of(part), depth, part.solid.z1 - part.solid.z0].map(|mm| f64::from(mm) / 1000.0)
 }
 
 /// Returns the forms of a unit to try in turn: the picked sizes first, then the other sizes, those that keep most rules

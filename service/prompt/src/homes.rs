@@ -9,21 +9,26 @@ use crate::subjects::facts_data;
 
 /// Takes the rooms that are named from those that the name of a home counts; returns what is left, and the words of what is not.
 ///
-/// "Dreizimmerwohnung: Wohnzimmer, Schlafzimmer, Kinderzimmer" has three rooms. A study alone is beside them ("3LDK with a study"):
-/// a list tells the rooms of a home where it says where one sleeps or sits.
+/// "Dreizimmerwohnung: Wohnzimmer, Schlafzimmer, Arbeitszimmer" has three rooms. A study is beside them where the list does not tell
+/// all of them ("3LDK with a study", "三室，主卧，书房"), and where nothing says where one sleeps or sits.
 pub(crate) fn named_among(mut facts: Vec<Stated>) -> (Vec<Stated>, Vec<Range<usize>>) {
     let data = facts_data();
-    let named: Vec<(String, u32)> = facts.iter().filter_map(|f| named_rooms(f)).collect();
+    let named: Vec<(String, u32)> = facts.iter().filter_map(named_rooms).collect();
     let is_list = named.iter().any(|(id, _)| data.lists.contains(id));
     let mut whole = Vec::new();
-    for at in 0..facts.len() {
-        let Some(counted) = counted_rooms(&mut facts[at]) else { continue };
+    for stated in &mut facts {
+        let words = stated.tokens.clone();
+        let Some(counted) = counted_rooms(stated) else { continue };
         let Some(of) = counted.room.id.as_ref().and_then(|id| data.counted.get(id)) else { continue };
-        let told = named.iter().filter(|(id, _)| of.contains(id));
-        let told = told.filter(|(id, _)| is_list || counted.room.id.as_ref() == Some(id)).map(|(_, n)| n).sum();
+        let so_many = |is_told: &dyn Fn(&String) -> bool| -> u32 {
+            named.iter().filter(|(id, _)| of.contains(id) && is_told(id)).map(|(_, n)| n).sum()
+        };
+        let all = so_many(&|_| is_list);
+        let certain = so_many(&|id| data.lists.contains(id) || counted.room.id.as_ref() == Some(id));
+        let told = if all >= counted.count.n { all } else { certain };
         counted.count.n = counted.count.n.saturating_sub(told);
         if counted.count.n == 0 {
-            whole.push(facts[at].tokens.clone());
+            whole.push(words);
         }
     }
     facts.retain_mut(|f| counted_rooms(f).is_none_or(|rooms| rooms.count.n > 0));

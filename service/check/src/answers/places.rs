@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use d3dgen_model::brief::{Ask, AskedCount, Bound, CapacityAsk, PlaceKind};
 use d3dgen_model::domain::{Domain, ObjectType, RoomType, Shape};
-use d3dgen_model::measures::BED_FOR_TWO_M;
+use d3dgen_model::measures::sleepers_in;
 use d3dgen_model::offer::{places, seating, seats_across, sleeps, works_in};
 use d3dgen_model::report::Fate;
 use d3dgen_model::scene_graph::GraphRoom;
@@ -173,7 +173,7 @@ impl<'a> Asked<'a> {
         let mut held = Held::default();
         for placement in self.world.placements.placements.iter().filter(|p| rooms.contains(p.room_id.as_str())) {
             let Some(object) = self.domain.object(&placement.object) else { continue };
-            let n = each(&Seat { width_m: placement.size_m[0], shape: object.shape, object });
+            let n = each(&Seat { size_m: placement.size_m, shape: object.shape, object });
             if n > 0 {
                 held.places += n;
                 held.most = held.most.max(n);
@@ -217,8 +217,8 @@ pub(super) struct Held {
 
 /// A thing that may have places.
 pub(super) struct Seat<'a> {
-    /// Its own width, m.
-    width_m: f64,
+    /// Its own width, depth and height, m.
+    size_m: [f64; 3],
     shape: Shape,
     object: &'a ObjectType,
 }
@@ -233,15 +233,15 @@ fn beds(thing: &Seat<'_>) -> u32 {
 
 /// Returns how many sleep in a bed.
 pub(super) fn sleepers(thing: &Seat<'_>) -> u32 {
-    beds(thing) * if thing.width_m >= BED_FOR_TWO_M { 2 } else { 1 }
+    beds(thing) * sleepers_in(thing.size_m)
 }
 
 /// Returns how many sit on a thing; on a wheelchair that stands ready nobody has a place.
 pub(super) fn seats_of(thing: &Seat<'_>) -> u32 {
     match thing.shape {
         _ if !thing.object.affordances.iter().any(|a| a == "sit") => 0,
-        Shape::Sofa => ((thing.width_m / SOFA_SEAT_M) as u32).max(1),
-        other => seats_across(other, thing.width_m),
+        Shape::Sofa => ((thing.size_m[0] / SOFA_SEAT_M) as u32).max(1),
+        other => seats_across(other, thing.size_m[0]),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::asked_objects;
 use crate::domain::{Domain, Furnishing, ObjectType, RoomType, Shape, Zone};
-use crate::measures::BED_FOR_TWO_M;
+use crate::measures::sleepers_in;
 use crate::scene_graph::GraphRoom;
 
 /// Tag of objects that are mounted where they stand.
@@ -30,7 +30,7 @@ pub fn rolls_beds(domain: &Domain, kind: &RoomType) -> bool {
 fn sleepers_of(domain: &Domain, item: &str) -> u32 {
     let of_one = |id: &str| {
         let bed = domain.object(id).filter(|o| matches!(o.shape, Shape::Bed | Shape::HospitalBed));
-        bed.map_or(0, |o| if o.sizes_m.first().is_some_and(|s| s[0] >= BED_FOR_TWO_M) { 2 } else { 1 })
+        bed.map_or(0, |o| o.sizes_m.first().map_or(1, |size| sleepers_in(*size)))
     };
     domain.counted_objects_of(item).map(|(id, count)| count * of_one(id)).sum()
 }

@@ -12,7 +12,7 @@ use crate::common::{body, count, in_room, most, named, rooms, worlds};
 const SEEDS: u64 = 2;
 
 /// Prompts with what they count: the rooms, the objects in them, and how many there are in all.
-const COUNTED: [(&str, &str, &str, usize); 8] = [
+const COUNTED: [(&str, &str, &str, usize); 11] = [
     ("gym with a spinning room for 20 bikes", "spinning_studio", "spin_bike", 20),
     ("parking garage for 60 cars", "parking_hall", "parked_car", 60),
     ("dairy barn for 80 cows", "barn_hall", "cow_stall", 80),
@@ -20,6 +20,9 @@ const COUNTED: [(&str, &str, &str, usize); 8] = [
     ("data center with 40 racks", "data_hall", "server_rack", 40),
     ("supermarket with five checkouts", "sales_floor", "checkout_counter", 5),
     ("hair salon with six chairs", "salon_floor", "salon_chair", 6),
+    ("슈퍼마켓 계산대 6개, 정육 코너, 베이커리, 창고와 하역장", "sales_floor", "checkout_counter", 6),
+    ("hostel with four eight-bed dorms with bunk beds", "dorm_room", "bunk_bed", 16),
+    ("post office with five counters and a sorting room", "post_hall", "teller_counter", 5),
     ("airport terminal with six check-in desks", "check_in_hall", "check_in_desk", 6),
 ];
 
@@ -33,7 +36,7 @@ const CALLED: [(&str, &str, usize); 5] = [
 ];
 
 /// Prompts of kinds with a room and an object by which one knows them without its label.
-const KNOWN_BY: [(&str, &str, &str); 29] = [
+const KNOWN_BY: [(&str, &str, &str); 46] = [
     ("prison with 12 cells", "guard_post", "control_console"),
     ("Gefängnis mit 8 Zellen", "prison_cell", "combination_wc"),
     ("indoor swimming pool", "pool_hall", "lifeguard_chair"),
@@ -63,7 +66,41 @@ const KNOWN_BY: [(&str, &str, &str); 29] = [
     ("marina office with showers", "reception", "small_reception_desk"),
     ("tattoo studio with three cabins", "tattoo_cabin", "massage_table"),
     ("bookshop with a reading corner for children", "book_shop", "double_bookshelf"),
+    ("palestra di arrampicata con area boulder", "climbing_area", "climbing_wall"),
+    ("Boulderhalle mit Umkleiden und Café", "bouldering_area", "bouldering_wall"),
+    ("casa de leilões com sala de leilões e dois escritórios", "saleroom", "auction_rostrum"),
+    ("agência dos correios com triagem e cais de carga", "mail_sorting_room", "sorting_frame"),
+    ("паромный терминал с залом ожидания", "boarding_gate", "ticket_gate"),
+    ("stadsarchief met een leeszaal", "archive_store", "mobile_shelving"),
+    ("sąd z dwiema salami rozpraw", "courtroom", "judges_bench"),
+    ("radio station with two studios and a control room", "studio_control_room", "control_console"),
+    ("музей с двумя выставочными залами и кассой", "ticket_desk", "shop_counter"),
+    ("Bäckerei mit Backstube und Verkaufstheke", "bakery_shop", "shop_counter"),
+    ("健身房，25米泳池，男女更衣室和淋浴间", "pool_hall", "lifeguard_chair"),
+    ("hemeroteca y sala infantil en una biblioteca municipal", "reading_room", "dining_chair"),
+    ("小学校、教室6つ、職員室、体育館", "gym", "court_lines"),
+    ("lavanderia a gettoni con 12 lavatrici", "laundry_hall", "washing_machine"),
+    ("autodealer met een werkplaats", "car_showroom", "display_car"),
+    ("каток с раздевалками", "ice_hall", "ice_sheet"),
+    ("kręgielnia z barem", "bowling_hall", "bowling_lane"),
 ];
+
+/// Rooms of one trade that a building of another was given for a word that both use.
+const OF_ANOTHER_TRADE: [(&str, &str); 4] = [
+    ("музей с тремя выставочными залами, гардеробом, кассой и кафе", "checkout"),
+    ("Kino mit drei Sälen, Foyer mit Kasse und Popcorntheke", "bar"),
+    ("Bäckerei mit Café für 20 Gäste, Backstube und Verkaufstheke", "bar"),
+    ("recording studio with a live room and a control room", "ct_control_room"),
+];
+
+#[test]
+fn a_room_is_of_the_trade_of_its_building() {
+    for (prompt, strange) in OF_ANOTHER_TRADE {
+        for world in worlds(prompt, SEEDS) {
+            assert_eq!(rooms(&world, strange).count(), 0, "{prompt} has a {strange}");
+        }
+    }
+}
 
 #[test]
 fn what_is_counted_is_there() {
@@ -86,6 +123,24 @@ fn every_kind_has_what_makes_it() {
     for (prompt, room_type, object) in KNOWN_BY {
         let held: Vec<bool> = worlds(prompt, SEEDS).iter().map(|w| count(w, room_type, object) > 0).collect();
         most(prompt, 1.0, &held);
+    }
+}
+
+/// Places of work and of the public in several countries.
+const WORKED_IN: [&str; 4] = [
+    "建筑设计事务所，24个工位，两间会议室，前台和展示区",
+    "office in Berlin for 24 people with two meeting rooms",
+    "agence de 12 postes à Lyon avec une salle de réunion",
+    "laundromat with 12 washers",
+];
+
+#[test]
+fn every_place_of_work_has_a_toilet_for_wheelchairs() {
+    for prompt in WORKED_IN {
+        for world in worlds(prompt, 1) {
+            let there = rooms(&world, "accessible_toilet").count();
+            assert!(there > 0, "{prompt}: {:?}", world.scene_graph.assumptions);
+        }
     }
 }
 

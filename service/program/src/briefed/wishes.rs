@@ -410,10 +410,24 @@ impl<'a> Facts<'a> {
         if self.stations(&object, asked) {
             return;
         }
+        // the till of a museum is its ticket desk
+        if let Some(id) = self.counter_elsewhere(&object).filter(|_| asked.room.is_none()) {
+            return self.wish(&id, &asked.object.name, AskedCount::exactly(1), true);
+        }
         let room_type = asked.room.as_ref().map(|room| self.type_of(room));
         let times = if asked.each_room { 1 } else { asked.count.n.clamp(1, MOST_THINGS) };
         let thing = Thing { object, room_type, each: asked.each_room };
         self.things.extend(std::iter::repeat_n(thing, times as usize));
+    }
+
+    /// Returns the room that the building has in the place of the one that goes by an object of another trade.
+    fn counter_elsewhere(&self, object: &str) -> Option<String> {
+        let (domain, program) = (self.domain?, self.program?);
+        let goes_by = |kind: &&RoomType| {
+            let line = kind.furnishing.first().filter(|line| line.required);
+            object.starts_with(&kind.id) && line.and_then(|l| domain.anchor(&l.item)).is_some_and(|o| o.id == object)
+        };
+        domain.room_types.iter().filter(goes_by).find_map(|kind| program.means.get(&kind.id)).cloned()
     }
 
     /// Gives so many of what one room has many of to that room: the tills of a checkout, the pumps of a forecourt. Returns false for

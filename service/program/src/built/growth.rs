@@ -50,7 +50,8 @@ pub(crate) fn circulation_share(reading: &Reading, rooms: &[Planned]) -> f64 {
 /// root of its area.
 const WALLS_M: f64 = 0.8 * 4.24;
 
-/// Returns the index of the hall of the domain that all other rooms open to; none where its walls are too short for them.
+/// Returns the index of the hall of the domain that all other rooms open to; none where its walls are too short for them, or where
+/// another hall is larger: the pool of a gym does not hang on its training floor.
 pub(crate) fn hub_hall(reading: &Reading, rooms: &[Planned]) -> Option<usize> {
     let types = &reading.domain.circulation.hub_room_types;
     let hub = types.iter().find_map(|t| rooms.iter().position(|r| &r.room_type == t))?;
@@ -58,7 +59,8 @@ pub(crate) fn hub_hall(reading: &Reading, rooms: &[Planned]) -> Option<usize> {
     let area = rooms[hub].reckoned_m2() * reading.area_m2.map_or(1.0, |area| area / reckoned);
     let others = rooms.iter().enumerate().filter(|(i, r)| *i != hub && r.host.is_none());
     let around: f64 = others.map(|(_, r)| r.kind.min_dimension_m).sum();
-    (around <= WALLS_M * area.sqrt()).then_some(hub)
+    let largest = rooms.iter().all(|r| r.reckoned_m2() <= rooms[hub].reckoned_m2());
+    (largest && around <= WALLS_M * area.sqrt()).then_some(hub)
 }
 
 /// Rooms that open to the one that is the way of a small home, at most: they have its walls.

@@ -2,6 +2,7 @@
 //! treatment room of a dental practice has a dental chair.
 
 use d3dgen_model::domain::{Access, Adjacency, AdjacencyRelation, Domain, GENERIC_ROOM_TYPE, Program, Zone};
+use d3dgen_model::offer;
 
 use super::mentions::Vocabulary;
 use crate::named::mention::{Mention, What};
@@ -51,8 +52,21 @@ pub(crate) fn settle(
         let known = domain.room_type(&id).is_some();
         let others = vocabulary.meanings_at(tokens, mention.span).filter(|_| !known);
         let meant = std::iter::once(&id).chain(others).find_map(|id| program.means.get(id));
+        // the six checkouts of a supermarket are in one sales floor
+        if meant.is_some_and(|own| share_counters(domain, &id, own)) && mention.count.is_some_and(|n| n > 1) {
+            (mention.count, mention.number, mention.plural) = (None, None, false);
+        }
         mention.what = What::Room(meant.unwrap_or(&id).clone());
     }
+}
+
+/// Returns true for two types of rooms that are counted by the same counters: those of a checkout stand in the sales floor.
+fn share_counters(domain: &Domain, a: &str, b: &str) -> bool {
+    let counted = |id: &str| {
+        let kind = domain.room_type(id).filter(|kind| offer::has_counters(domain, kind))?;
+        kind.furnishing.first().map(|line| &line.item)
+    };
+    a != b && counted(a).is_some_and(|item| counted(b) == Some(item))
 }
 
 /// Takes the number of rooms of a building that is all for guests for that of the rooms they sleep in: "hotel with 20 rooms".
