@@ -11,7 +11,7 @@ use d3dgen_model::world::World;
 use d3dgen_model::{Point, Polygon, Rect};
 use resvg::{tiny_skia, usvg};
 
-use crate::Error;
+use crate::error::Error;
 use crate::font::{Font, Weight};
 
 /// Largest width and height of the plans, px.

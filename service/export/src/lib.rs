@@ -5,6 +5,7 @@
 
 pub mod error;
 pub mod exporters;
+pub mod file;
 pub mod film;
 pub mod manifest;
 pub mod models;
@@ -22,7 +23,8 @@ mod used;
 mod xml;
 
 pub use error::Error;
-pub use exporters::{Exporter, File};
+pub use exporters::Exporter;
+pub use file::File;
 pub use subject::Subject;
 
 #[cfg(test)]

@@ -5,9 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Map, Value, json};
 
+use crate::error::Error;
 use crate::exporters::{Exporter, File};
 use crate::scene::SimScene;
-use crate::{Error, Subject};
+use crate::subject::Subject;
 
 /// Name of the file at the top of a world's folder.
 pub const FILE: &str = "manifest.json";

@@ -9,8 +9,9 @@ use d3dgen_model::domain::{Mount, ObjectType};
 use serde_json::{Value, json};
 
 use crate::color::Rgb;
-use crate::exporters::File;
-use crate::{Error, yaml};
+use crate::error::Error;
+use crate::file::File;
+use crate::yaml;
 
 /// A model to be made.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,6 @@
 //! Gray pictures as PNG, for maps and masks.
 
-use crate::Error;
+use crate::error::Error;
 
 /// Returns 8-bit gray pixels, row by row from the top, as PNG; `name` is for messages.
 ///

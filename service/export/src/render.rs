@@ -7,9 +7,10 @@ use d3dgen_mesh::picture::studio::{Camera, Daylight, Effort, Studio};
 use d3dgen_mesh::world3d::Node;
 use d3dgen_model::geometry::{Point, Rect};
 
+use crate::error::Error;
+use crate::file::File;
 use crate::scene::{SimRoom, SimScene};
 use crate::view::{CEILING, storey_layer};
-use crate::{Error, File};
 
 /// Which pictures are wanted.
 #[derive(Debug, Clone, PartialEq)]

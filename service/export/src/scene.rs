@@ -26,7 +26,7 @@ use d3dgen_model::geometry::{Point, Polygon};
 use d3dgen_model::scenario::RoiKind;
 use d3dgen_model::world::World;
 
-use crate::Error;
+use crate::error::Error;
 use crate::models::KeptModels;
 use ids::Ids;
 

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use d3dgen_model::domain::Domain;
 use d3dgen_model::world::World;
 
-use crate::Error;
+use crate::error::Error;
 use crate::models::KeptModels;
 use crate::scene::SimScene;
 

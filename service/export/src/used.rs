@@ -10,8 +10,8 @@ use d3dgen_model::placements::Placement;
 use d3dgen_model::seed::Stream;
 use d3dgen_model::world::World;
 
-use crate::Error;
-use crate::exporters::File;
+use crate::error::Error;
+use crate::file::File;
 use crate::models::{self, KeptModels, ModelRequest};
 
 /// Variants that the models of an object come in; the first is the one that its build shows first.

@@ -13,7 +13,7 @@ use d3dgen_mesh::world3d::{Lamp, LampKind, Node, lamp_color};
 use d3dgen_mesh::{World3d, finish};
 use d3dgen_model::geometry::Point;
 
-use crate::Error;
+use crate::error::Error;
 use crate::scene::{SimRoom, SimScene};
 
 pub(crate) use doors::{handle_places, leaf_part, window_part};

@@ -18,7 +18,8 @@ use std::sync::{Arc, OnceLock};
 use d3dgen_model::document::Problem;
 use d3dgen_model::domain::{Build, Domain, ObjectType, Shape};
 
-use crate::{Error, Model3d};
+use crate::error::Error;
+use crate::model3d::Model3d;
 use solids::Detail;
 
 /// Most triangles of a generated model.

@@ -1,7 +1,7 @@
 //! Fewer collision shapes: those whose common box adds least space become one.
 
-use crate::Collision;
 use crate::affine::Vec3;
+use crate::model3d::Collision;
 
 /// Most space that a merge may fill that nothing filled, m3.
 const FILLED_M3: f64 = 0.005;

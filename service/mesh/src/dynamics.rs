@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use crate::affine::{Vec3, add, cross, dot, scale, sub};
 use crate::mass::{Inertia, inertia};
-use crate::{Joint, JointKind, Model3d};
+use crate::model3d::{Joint, JointKind, Model3d};
 
 /// Gravity, m/s^2.
 const GRAVITY: f64 = 9.81;
@@ -358,7 +358,7 @@ pub(crate) fn turned(v: Vec3, axis: Vec3, angle: f64) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Body, Collision};
+    use crate::model3d::{Body, Collision};
 
     fn flap(kind: JointKind, axis: Vec3, limits: Option<[f64; 2]>) -> (Model3d, Joint) {
         let body = |min: Vec3, max: Vec3, mass_kg| Body {

@@ -11,8 +11,8 @@ use std::sync::OnceLock;
 
 use serde::Deserialize;
 
-use crate::Material;
 use crate::builds::tones::{linear, srgb};
+use crate::model3d::Material;
 
 /// Width and height of the pictures, px.
 pub const SIDE: usize = 256;

@@ -1,7 +1,7 @@
 //! Center of mass and inertia of rigid bodies, in closed form from their collision shapes.
 
 use crate::affine::Vec3;
-use crate::{Body, Collision, Model3d};
+use crate::model3d::{Body, Collision, Model3d};
 
 /// How a body resists being moved.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,9 +4,9 @@
 //! around all of them is cut in two where that saves most empty space, and so on, until little is saved: a table becomes
 //! its top and its legs, and a robot passes between them.
 
-use crate::Collision;
-use crate::Mesh;
 use crate::affine::{Vec3, add, cross, length, scale, sub};
+use crate::model3d::Collision;
+use crate::model3d::Mesh;
 
 /// Most boxes of one body.
 pub const MOST: usize = 24;

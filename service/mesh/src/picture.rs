@@ -7,7 +7,8 @@ mod shade;
 pub mod studio;
 mod texture;
 
-use crate::{Error, Material, Model3d};
+use crate::error::Error;
+use crate::model3d::{Material, Model3d};
 use shade::Light;
 
 /// A picture in memory.

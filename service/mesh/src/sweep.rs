@@ -2,7 +2,7 @@
 
 use crate::affine::{Vec3, add, cross, dot, length, scale, sub};
 use crate::dynamics::{bodies_moved, moved_by, turned};
-use crate::{Collision, Joint, JointKind, Model3d};
+use crate::model3d::{Collision, Joint, JointKind, Model3d};
 
 /// Positions of a joint's range at which its bodies are looked at.
 const POSITIONS: usize = 24;
@@ -93,7 +93,7 @@ pub fn swept(model: &Model3d, joint: &Joint) -> Vec<(usize, Block)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Body;
+    use crate::model3d::Body;
 
     fn block(min: Vec3, max: Vec3) -> Block {
         Block::around(&Collision::Box { min, max })

@@ -5,7 +5,7 @@
 use serde_json::{Map, Value};
 
 use crate::affine::{Affine, Vec3};
-use crate::{JointKind, Material, Model3d, Texture, Visual};
+use crate::model3d::{JointKind, Material, Model3d, Texture, Visual};
 
 /// A world as it is seen; meters, z up.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -16,7 +16,8 @@ pub use usd::{asset_usda, usda};
 pub use usdz::{pack, usdz};
 
 use crate::affine::{Vec3, cross, dot, unit};
-use crate::{Error, Material, Model3d, Texture};
+use crate::error::Error;
+use crate::model3d::{Material, Model3d, Texture};
 
 /// A file beside others, by its name.
 #[derive(Debug, Clone, PartialEq, Eq)]

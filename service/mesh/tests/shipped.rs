@@ -12,10 +12,20 @@ use d3dgen_plugins::{Plugin, Registry};
 /// Thinner things are plates.
 const FLAT_M: f64 = 0.12;
 
-fn objects() -> Vec<(String, ObjectType)> {
-    let registry = Registry::builtin();
-    let of = |p: &dyn Plugin| p.domain().objects.iter().map(|o| (p.id().to_owned(), o.clone())).collect::<Vec<_>>();
-    registry.iter().flat_map(of).collect()
+/// A domain's objects, with the shipped builds and its own.
+struct Stock {
+    domain: String,
+    library: Library,
+    objects: Vec<ObjectType>,
+}
+
+fn stocks() -> Vec<Stock> {
+    let of = |p: &dyn Plugin| Stock {
+        domain: p.id().to_owned(),
+        library: Library::shipped().with(&p.domain().builds),
+        objects: p.domain().objects.clone(),
+    };
+    Registry::builtin().iter().map(of).collect()
 }
 
 fn open_edges(mesh: &Mesh) -> usize {
@@ -75,11 +85,11 @@ fn problems(model: &Model3d, size: [f64; 3]) -> Vec<String> {
 
 #[test]
 fn every_shipped_object_has_a_sound_model_at_every_size() {
-    let library = Library::shipped();
     let (mut wrong, mut triangles, mut seen) = (Vec::new(), Vec::new(), BTreeSet::new());
-    for (domain, object) in objects() {
+    let stocks = stocks();
+    for (Stock { domain, library, .. }, object) in stocks.iter().flat_map(|s| s.objects.iter().map(move |o| (s, o))) {
         for size in &object.sizes_m {
-            let made = library.of(&object).and_then(|build| generate_by(build, &object, *size, 0));
+            let made = library.of(object).and_then(|build| generate_by(build, object, *size, 0));
             match made {
                 Err(error) => wrong.push(format!("{domain}/{}: {error}", object.id)),
                 Ok(model) => {
@@ -106,15 +116,15 @@ fn every_shipped_object_has_a_sound_model_at_every_size() {
 
 #[test]
 fn variants_of_the_shipped_objects_are_sound_too() {
-    let library = Library::shipped();
     let mut wrong = Vec::new();
-    for (domain, object) in objects() {
-        let Ok(build) = library.of(&object) else { continue };
+    let stocks = stocks();
+    for (Stock { domain, library, .. }, object) in stocks.iter().flat_map(|s| s.objects.iter().map(move |o| (s, o))) {
+        let Ok(build) = library.of(object) else { continue };
         if build.choices.is_empty() {
             continue;
         }
         for seed in 1..6 {
-            match generate_by(build, &object, object.sizes_m[0], seed) {
+            match generate_by(build, object, object.sizes_m[0], seed) {
                 Err(error) => wrong.push(format!("{domain}/{} seed {seed}: {error}", object.id)),
                 Ok(model) => {
                     let found = problems(&model, object.sizes_m[0]);
@@ -132,11 +142,12 @@ fn every_shape_has_a_build_that_holds_at_all_sizes_of_its_objects() {
     let missing: Vec<&str> = Shape::all().map(Shape::name).filter(|name| library.get(name).is_none()).collect();
     assert!(missing.is_empty(), "no builds are called {missing:?}");
     let mut wrong = Vec::new();
-    for (domain, object) in objects() {
+    let stocks = stocks();
+    for (Stock { domain, .. }, object) in stocks.iter().flat_map(|s| s.objects.iter().map(move |o| (s, o))) {
         let build = library.get(object.shape.name()).unwrap();
         // Things as flat as a shelf board are made by their own builds, and by a box where they have none.
         for size in object.sizes_m.iter().filter(|s| s.iter().all(|v| *v > FLAT_M)) {
-            let found = match generate_by(build, &object, *size, 0) {
+            let found = match generate_by(build, object, *size, 0) {
                 Err(error) => vec![error.to_string()],
                 Ok(model) => problems(&model, *size),
             };

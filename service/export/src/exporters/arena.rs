@@ -11,11 +11,14 @@ mod world_yaml;
 use d3dgen_model::floorplan::DoorKind;
 use serde_json::{Value, json};
 
-use super::{Exporter, File};
+use super::Exporter;
+use crate::file::File;
+use crate::error::Error;
 use crate::models::snake;
 use crate::scene::SimScene;
+use crate::subject::Subject;
 use crate::used::UsedModels;
-use crate::{Error, Subject, yaml};
+use crate::yaml;
 
 /// Writes the Arena bundle.
 pub struct Arena;

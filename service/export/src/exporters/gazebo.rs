@@ -17,10 +17,12 @@ use d3dgen_mesh::writers::number::n;
 use serde_json::json;
 
 use super::mujoco::json_text;
-use super::{Exporter, File};
+use super::Exporter;
+use crate::file::File;
+use crate::error::Error;
 use crate::scene::{Mobility, SimModel, SimObject, SimScene};
+use crate::subject::Subject;
 use crate::xml::Xml;
-use crate::{Error, Subject};
 
 /// The first label of things; 0 is what has none, 1 to 4 is the building.
 const FIRST_LABEL: usize = 10;

@@ -2,9 +2,12 @@
 
 use d3dgen_mesh::writers;
 
-use super::{Exporter, File};
+use super::Exporter;
+use crate::file::File;
+use crate::error::Error;
 use crate::scene::SimScene;
-use crate::{Error, Subject, view};
+use crate::subject::Subject;
+use crate::view;
 
 /// The exporter.
 pub struct Gltf;

@@ -10,10 +10,12 @@ mod meshes;
 
 use d3dgen_mesh::writers::number::n;
 
-use super::{Exporter, File};
+use super::Exporter;
+use crate::file::File;
+use crate::error::Error;
 use crate::scene::{SimBox, SimScene, SimShape};
+use crate::subject::Subject;
 use crate::xml::Xml;
-use crate::{Error, Subject};
 
 /// Step of the simulation, s.
 const STEP_S: &str = "0.002";

@@ -11,10 +11,13 @@ use d3dgen_model::scenario::{Poi, RoiKind};
 use d3dgen_model::world::World;
 use serde_json::{Value, json};
 
-use super::{Exporter, File};
+use super::Exporter;
+use crate::file::File;
+use crate::error::Error;
 use crate::roadmap::{Body, Ground, Place, Roadmap};
 use crate::scene::SimScene;
-use crate::{Error, Subject, yaml};
+use crate::subject::Subject;
+use crate::yaml;
 
 /// Writes the nav2 folder.
 pub struct Nav2;

@@ -26,8 +26,10 @@ use d3dgen_model::scenario::RoiKind;
 use d3dgen_model::world::World;
 use resvg::{tiny_skia, usvg};
 
-use super::{Exporter, File};
-use crate::{Error, Subject};
+use super::Exporter;
+use crate::file::File;
+use crate::error::Error;
+use crate::subject::Subject;
 use building::Sides;
 use dimensions::Dimensions;
 use page::{Frame, Page, Path};

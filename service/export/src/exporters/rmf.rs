@@ -14,10 +14,13 @@ use d3dgen_model::storeys::LinkKind;
 use d3dgen_model::world::World;
 use serde_json::{Map, Value, json};
 
-use super::{Exporter, File};
+use super::Exporter;
+use crate::file::File;
+use crate::error::Error;
 use crate::roadmap::{Body, Ground, Lane, Place, Roadmap};
 use crate::scene::SimScene;
-use crate::{Error, Subject, yaml};
+use crate::subject::Subject;
+use crate::yaml;
 
 /// Writes the building map and the navigation graph.
 pub struct Rmf;

@@ -10,8 +10,11 @@ use d3dgen_model::geometry::{Pose, to_mm};
 use d3dgen_model::scenario::{Act, Agent, RobotJob, RobotJobKind, RobotTask, Scenario};
 use serde_json::{Map, Value, json};
 
-use super::{Exporter, File};
-use crate::{Error, Subject, yaml};
+use super::Exporter;
+use crate::file::File;
+use crate::error::Error;
+use crate::subject::Subject;
+use crate::yaml;
 
 /// HuNavSim's `REGULAR` behavior, the radius that its social forces are tuned for, m, and the height of its models' middle, m.
 const REGULAR: u32 = 1;

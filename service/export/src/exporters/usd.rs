@@ -15,9 +15,12 @@ use d3dgen_mesh::writers::{self, ModelFile};
 use d3dgen_mesh::{World3d, finish};
 use serde_json::Value;
 
-use super::{Exporter, File};
+use super::Exporter;
+use crate::file::File;
+use crate::error::Error;
 use crate::scene::{SimDoor, SimLeaf, SimScene};
-use crate::{Error, Subject, view};
+use crate::subject::Subject;
+use crate::view;
 
 /// The exporter.
 pub struct Usd;

@@ -9,7 +9,7 @@ use d3dgen_model::placements::Placement;
 
 use super::ids::Ids;
 use super::{Mobility, Place, SimLight, SimModel, SimObject, physics};
-use crate::Error;
+use crate::error::Error;
 use crate::models::KeptModels;
 use crate::used::UsedModels;
 

@@ -6,7 +6,7 @@ use d3dgen_model::floorplan::DoorKind;
 
 use super::shapes::{Sorted, boxed};
 use super::{Part, View};
-use crate::Error;
+use crate::error::Error;
 use crate::scene::{SimBox, SimDoor, SimLeaf, SimWindow};
 
 /// Width of a casing, and how far it stands out of the wall, m.

@@ -7,7 +7,7 @@ use d3dgen_mesh::{Library, Model3d, World3d, generate};
 use d3dgen_model::domain::{Mount, ObjectType};
 
 use super::{CEILING, View};
-use crate::Error;
+use crate::error::Error;
 use crate::scene::SimObject;
 use crate::used::plain;
 

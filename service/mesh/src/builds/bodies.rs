@@ -7,7 +7,8 @@ use d3dgen_model::domain::{BASE, BuildJoint, BuildJointKind, Mirror, Repeat};
 use super::copies;
 use super::scope::Scope;
 use crate::affine::{Affine, Vec3, scale, unit};
-use crate::{Error, JointKind};
+use crate::error::Error;
+use crate::model3d::JointKind;
 
 /// The copies of a moving body.
 pub(super) struct Moving<'a> {

@@ -2,7 +2,8 @@
 
 use super::solids::Hull;
 use crate::affine::{Affine, Vec3, cross, length, unit};
-use crate::{Collision, coarse};
+use crate::coarse;
+use crate::model3d::Collision;
 
 /// Most convex shapes of one body.
 pub(super) const MOST: usize = 24;

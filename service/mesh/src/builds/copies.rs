@@ -3,8 +3,8 @@
 use d3dgen_model::domain::{Mirror, Repeat};
 
 use super::scope::Scope;
-use crate::Error;
 use crate::affine::{Affine, scale};
+use crate::error::Error;
 
 /// Most copies of one part or joint.
 const MOST: f64 = 500.0;

@@ -9,8 +9,9 @@ use super::solids::{self, Detail, Frame, Hull, Made};
 use super::tones::{self, Look};
 use super::{collide, copies, unwrap};
 use crate::affine::Affine;
+use crate::error::Error;
+use crate::model3d::{Body, Joint, Material, Model3d, Visual};
 use crate::surface::Surface;
-use crate::{Body, Error, Joint, Material, Model3d, Visual};
 
 /// How far a build may miss its size: a share of the extent, and m for thin things.
 const MISS: (f64, f64) = (0.02, 0.0005);
@@ -272,7 +273,7 @@ fn assemble(
 ) -> Result<Model3d, Error> {
     let mut model = Model3d { name: object.id.clone(), ..Model3d::default() };
     let mut surfaces: Vec<Vec<(usize, Surface)>> = bodies.list.iter().map(|_| Vec::new()).collect();
-    let mut shapes: Vec<Vec<crate::Collision>> = bodies.list.iter().map(|_| Vec::new()).collect();
+    let mut shapes: Vec<Vec<crate::model3d::Collision>> = bodies.list.iter().map(|_| Vec::new()).collect();
     let mut masses = vec![0.0; bodies.list.len()];
     for piece in pieces {
         let material = match model.materials.iter().position(|m| *m == piece.look.material) {

@@ -7,7 +7,7 @@ use d3dgen_model::domain::{Build, Formula};
 use d3dgen_model::seed::Stream;
 
 use super::size_text;
-use crate::Error;
+use crate::error::Error;
 
 /// The figures of a build at a size.
 pub(super) struct Scope<'a> {

@@ -2,7 +2,7 @@ use d3dgen_model::domain::Shape;
 use serde_json::{Value, json};
 
 use super::*;
-use crate::{Collision, JointKind};
+use crate::model3d::{Collision, JointKind};
 
 fn object(value: Value) -> ObjectType {
     let mut object = json!({

@@ -2,7 +2,7 @@
 
 use d3dgen_model::domain::{ObjectType, Tone};
 
-use crate::Material;
+use crate::model3d::Material;
 
 /// What a tone looks like and weighs.
 #[derive(Debug, Clone, PartialEq)]

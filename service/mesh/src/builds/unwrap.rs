@@ -1,7 +1,7 @@
 //! Texture coordinates of what is made, in meters: projected along the nearest axis, and grain along the longer way of each face,
 //! as boards are cut.
 
-use crate::Mesh;
+use crate::model3d::Mesh;
 use crate::surface::Surface;
 
 /// How much longer a face is up than across before its grain runs up.

@@ -3,8 +3,8 @@
 use super::View;
 use super::shade::Light;
 use super::texture::Cloth;
-use crate::Model3d;
 use crate::affine::{Vec3, add, cross, dot, scale, sub, unit};
+use crate::model3d::Model3d;
 
 /// Samples along each side of a pixel.
 pub(super) const SAMPLES: usize = 2;
@@ -157,7 +157,7 @@ struct Place {
     y: f64,
 }
 
-fn placement(visuals: &[&crate::Visual], seen: &[Vec<[f64; 3]>], side: usize) -> Option<Place> {
+fn placement(visuals: &[&crate::model3d::Visual], seen: &[Vec<[f64; 3]>], side: usize) -> Option<Place> {
     let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
     for (visual, seen) in visuals.iter().zip(seen) {
         for p in visual.mesh.triangles.iter().flatten().filter_map(|i| seen.get(*i as usize)) {
@@ -181,7 +181,13 @@ fn placement(visuals: &[&crate::Visual], seen: &[Vec<[f64; 3]>], side: usize) ->
 }
 
 /// Returns the corners of a triangle; none when an index is out of range.
-fn corners(eye: &Eye, mesh: &crate::Mesh, seen: &[[f64; 3]], triangle: &[u32; 3], place: &Place) -> Option<[Seen; 3]> {
+fn corners(
+    eye: &Eye,
+    mesh: &crate::model3d::Mesh,
+    seen: &[[f64; 3]],
+    triangle: &[u32; 3],
+    place: &Place,
+) -> Option<[Seen; 3]> {
     let ids = triangle.map(|i| i as usize);
     let mut out = [Seen { x: 0.0, y: 0.0, near: 0.0, normal: [0.0; 3], uv: [0.0; 2] }; 3];
     let mut flat = None;

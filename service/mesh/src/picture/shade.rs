@@ -2,7 +2,7 @@
 
 use super::raster::{SAMPLES, Samples};
 use super::{Ground, Picture};
-use crate::Material;
+use crate::model3d::Material;
 
 /// Direction of the light in the frame of the eye: from above left.
 const KEY: [f32; 3] = [-0.42, 0.62, 0.66];

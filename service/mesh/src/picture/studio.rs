@@ -7,10 +7,10 @@ mod bvh;
 mod light;
 mod smooth;
 
-use crate::World3d;
 use crate::affine::{Vec3, cross, sub, unit};
 use crate::picture::Picture;
 use crate::picture::texture::Cloth;
+use crate::world3d::World3d;
 use crate::world3d::{LampKind, Node};
 use bvh::{Bvh, Corner, Hit, Ray, Triangle};
 use light::{Lamp, Surface};
@@ -93,7 +93,7 @@ impl Studio {
         let places = world.places(openness);
         let mut surfaces: Vec<Surface> =
             world.materials.iter().map(|m| Surface::new(m, Cloth::of(m, &world.textures))).collect();
-        surfaces.push(Surface::new(&crate::Material::default(), None));
+        surfaces.push(Surface::new(&crate::model3d::Material::default(), None));
         let mut is_hidden = vec![false; world.nodes.len()];
         let (mut triangles, mut lamps) = (Vec::new(), Vec::new());
         for (i, (node, place)) in world.nodes.iter().zip(&places).enumerate() {

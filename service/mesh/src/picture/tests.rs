@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Body, Material, Mesh, Texture, Visual};
+use crate::model3d::{Body, Material, Mesh, Texture, Visual};
 
 /// A square plate upright at the front, and one behind it to the right.
 fn plates() -> Model3d {

@@ -5,7 +5,7 @@ use std::io::Cursor;
 use image::imageops::FilterType;
 use image::{ImageReader, Limits};
 
-use crate::{Material, Model3d, Texture};
+use crate::model3d::{Material, Model3d, Texture};
 
 /// Longest side of a picture that is drawn with, px.
 const SIDE: u32 = 256;

@@ -10,7 +10,9 @@ pub use world::world_glb;
 
 use super::{check, picture_extension, plain};
 use crate::affine::{Vec3, sub};
-use crate::{Body, Error, Finish, Joint, JointKind, Material, Model3d, Texture, Visual};
+use crate::error::Error;
+use crate::finish::Finish;
+use crate::model3d::{Body, Joint, JointKind, Material, Model3d, Texture, Visual};
 
 const ARRAY_BUFFER: u32 = 34_962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34_963;

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use super::number::{n, push};
 use super::{picture_extension, texture_of};
-use crate::{Body, Mesh, Model3d, Visual};
+use crate::model3d::{Body, Mesh, Model3d, Visual};
 
 /// Returns the OBJ text of a body.
 pub(super) fn obj(model: &Model3d, body: &Body, library: &str) -> String {

@@ -6,9 +6,10 @@ use super::number::{n, small};
 use super::{ModelFile, check, obj, picture_extension, roll_pitch_yaw, texture_of};
 use crate::affine::Vec3;
 use crate::dynamics;
+use crate::error::Error;
 use crate::mass::inertia;
 use crate::model3d::welded;
-use crate::{Body, Collision, Error, Joint, JointKind, Model3d};
+use crate::model3d::{Body, Collision, Joint, JointKind, Model3d};
 
 /// Returns `<name>.sdf` and the meshes and materials it refers to, all for one folder.
 ///

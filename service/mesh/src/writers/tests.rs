@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Body, Collision, Joint, JointKind, Material, Mesh, Texture, Visual};
+use crate::model3d::{Body, Collision, Joint, JointKind, Material, Mesh, Texture, Visual};
 
 /// A box with a door: every kind of collision shape, a joint, a texture.
 fn model() -> Model3d {

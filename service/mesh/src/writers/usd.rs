@@ -9,8 +9,9 @@ use super::number::{n, small};
 use super::quaternion;
 use super::{check, plain};
 use crate::dynamics;
+use crate::error::Error;
 use crate::mass::{Inertia, whole};
-use crate::{Body, Error, Model3d};
+use crate::model3d::{Body, Model3d};
 
 /// First day of the format's year in which assets of this form were first written: a fixed date, as the same model is the
 /// same bytes on every day.

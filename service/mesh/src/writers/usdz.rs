@@ -2,7 +2,8 @@
 
 use super::usd::usda;
 use super::{ModelFile, picture_of, plain};
-use crate::{Error, Model3d};
+use crate::error::Error;
+use crate::model3d::Model3d;
 
 /// Where the content of each file begins.
 const ALIGNMENT: usize = 64;

@@ -6,7 +6,7 @@ use d3dgen_model::floorplan::Floorplan;
 use d3dgen_model::geometry::{Rect, to_mm};
 use serde_json::{Value, json};
 
-use crate::Error;
+use crate::error::Error;
 
 /// Edge of a cell, m.
 const RESOLUTION_M: f64 = 0.05;

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use d3dgen_mesh::finish::{self, Finish};
 use d3dgen_model::world::World;
 
-use crate::exporters::File;
+use crate::file::File;
 
 /// Returns the files of every surface of a world under `root`.
 pub(super) fn files(world: &World, root: &str) -> Vec<File> {

@@ -14,7 +14,7 @@ use d3dgen_model::world::World;
 use serde_json::{Value, json};
 
 use super::{position, snake};
-use crate::Error;
+use crate::error::Error;
 use crate::used::UsedModels;
 
 /// Thickness of a sliding panel, m.

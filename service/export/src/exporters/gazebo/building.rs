@@ -8,7 +8,7 @@ use d3dgen_mesh::writers::number::n;
 use d3dgen_model::geometry::Point;
 
 use super::label;
-use crate::exporters::File;
+use crate::file::File;
 use crate::scene::{SimBox, SimScene, SimShape, merged};
 use crate::xml::Xml;
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::doors;
-use crate::exporters::File;
+use crate::file::File;
 use crate::scene::SimScene;
 
 /// Returns `launch/world.launch.py` and `config/bridge.yaml`.

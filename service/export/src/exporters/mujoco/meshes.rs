@@ -6,7 +6,7 @@ use d3dgen_mesh::writers;
 use d3dgen_mesh::{Body, Material, Mesh};
 
 use super::list;
-use crate::exporters::File;
+use crate::file::File;
 use crate::scene::{SimModel, SimScene};
 use crate::xml::Xml;
 

@@ -12,7 +12,7 @@ use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 use resvg::tiny_skia::{PathSegment, Point, Transform};
 use resvg::usvg::{FillRule, Group, LineCap, LineJoin, Node, Paint, PaintOrder, Path, Stroke, Tree};
 
-use crate::Error;
+use crate::error::Error;
 
 /// Points of an inch, and pixels of one as SVG counts them.
 const POINTS: f32 = 72.0 / 96.0;

@@ -9,7 +9,7 @@ use d3dgen_mesh::writers::usd::prototype;
 use d3dgen_mesh::writers::usd::text::{Text, identifier, schemas, triple};
 use d3dgen_mesh::{JointKind, World3d};
 
-use crate::Error;
+use crate::error::Error;
 use crate::scene::{SimBox, SimDoor, SimLeaf, SimScene, SimShape, SimZone};
 use crate::view::{Part, handle_places, leaf_part, window_part};
 

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::exporters::File;
+use crate::file::File;
 use crate::scene::{Mobility, SimScene};
 use crate::yaml;
 

@@ -9,7 +9,7 @@ use d3dgen_mesh::writers::usd::text::{Text, identifier, quoted, schemas};
 use d3dgen_mesh::writers::usd::{AssetFacts, asset_usda, base_name, body_names, pictures};
 use d3dgen_mesh::{Body, Model3d, dynamics};
 
-use crate::Error;
+use crate::error::Error;
 use crate::scene::{Mobility, SimObject, SimScene};
 
 /// Side of a thumbnail, px: what SimReady asks for.

@@ -2,7 +2,7 @@
 
 use super::bvh::{Hit, Ray, cross, dot};
 use super::{Daylight, Studio};
-use crate::Material;
+use crate::model3d::Material;
 use crate::picture::texture::Cloth;
 use crate::world3d;
 

@@ -1,6 +1,6 @@
 use super::*;
+use crate::model3d::{JointKind, Material, Mesh, Visual};
 use crate::world3d::Node;
-use crate::{JointKind, Material, Mesh, Visual};
 
 /// A white floor, a red wall at the back, and a lid over all of it on a layer of its own.
 fn room() -> World3d {

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use serde_json::{Map, Value, json};
 
 use super::{File, round, y_up};
+use crate::error::Error;
+use crate::model3d::JointKind;
 use crate::world3d::{Lamp, LampKind, Motion, Node, World3d};
-use crate::{Error, JointKind};
 
 /// How long a thing takes to open, s.
 const OPENS_S: f32 = 1.5;

@@ -3,9 +3,9 @@
 use super::text::{Text, names, quat, quoted, schemas, triple};
 use crate::affine::Vec3;
 use crate::dynamics;
+use crate::model3d::{Collision, Joint, JointKind, Material, Texture, Visual};
 use crate::writers::number::{n, push};
 use crate::writers::{frame_along, picture_of, quaternion};
-use crate::{Collision, Joint, JointKind, Material, Texture, Visual};
 
 /// Where the pictures of materials lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
