@@ -38,7 +38,11 @@ pub(crate) fn gathered(graph: &SceneGraph, domain: &Domain) -> Option<SceneGraph
     let mut out = graph.clone();
     for host in graph.rooms.iter().filter(|r| !r.circulation) {
         let mut kinds: BTreeMap<&str, Vec<&GraphRoom>> = BTreeMap::new();
-        let serves = |r: &GraphRoom| domain.room_type_or_generic(&r.room_type).zone == Zone::Service;
+        // docks stay as many as they are: each has its gate
+        let serves = |r: &GraphRoom| {
+            let kind = domain.room_type_or_generic(&r.room_type);
+            kind.zone == Zone::Service && kind.outdoor_door_m.is_none()
+        };
         for room in graph.rooms.iter().filter(|r| !r.locked && serves(r) && is_behind(graph, r, host)) {
             kinds.entry(&room.room_type).or_default().push(room);
         }

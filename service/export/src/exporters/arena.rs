@@ -12,8 +12,8 @@ use d3dgen_model::floorplan::DoorKind;
 use serde_json::{Value, json};
 
 use super::Exporter;
-use crate::file::File;
 use crate::error::Error;
+use crate::file::File;
 use crate::models::snake;
 use crate::scene::SimScene;
 use crate::subject::Subject;

@@ -16,10 +16,10 @@ use d3dgen_mesh::writers;
 use d3dgen_mesh::writers::number::n;
 use serde_json::json;
 
-use super::mujoco::json_text;
 use super::Exporter;
-use crate::file::File;
+use super::mujoco::json_text;
 use crate::error::Error;
+use crate::file::File;
 use crate::scene::{Mobility, SimModel, SimObject, SimScene};
 use crate::subject::Subject;
 use crate::xml::Xml;

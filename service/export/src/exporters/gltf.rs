@@ -3,8 +3,8 @@
 use d3dgen_mesh::writers;
 
 use super::Exporter;
-use crate::file::File;
 use crate::error::Error;
+use crate::file::File;
 use crate::scene::SimScene;
 use crate::subject::Subject;
 use crate::view;

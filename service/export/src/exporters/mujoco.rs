@@ -11,8 +11,8 @@ mod meshes;
 use d3dgen_mesh::writers::number::n;
 
 use super::Exporter;
-use crate::file::File;
 use crate::error::Error;
+use crate::file::File;
 use crate::scene::{SimBox, SimScene, SimShape};
 use crate::subject::Subject;
 use crate::xml::Xml;

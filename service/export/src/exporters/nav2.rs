@@ -12,8 +12,8 @@ use d3dgen_model::world::World;
 use serde_json::{Value, json};
 
 use super::Exporter;
-use crate::file::File;
 use crate::error::Error;
+use crate::file::File;
 use crate::roadmap::{Body, Ground, Place, Roadmap};
 use crate::scene::SimScene;
 use crate::subject::Subject;

@@ -27,8 +27,8 @@ use d3dgen_model::world::World;
 use resvg::{tiny_skia, usvg};
 
 use super::Exporter;
-use crate::file::File;
 use crate::error::Error;
+use crate::file::File;
 use crate::subject::Subject;
 use building::Sides;
 use dimensions::Dimensions;

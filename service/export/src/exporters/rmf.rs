@@ -15,8 +15,8 @@ use d3dgen_model::world::World;
 use serde_json::{Map, Value, json};
 
 use super::Exporter;
-use crate::file::File;
 use crate::error::Error;
+use crate::file::File;
 use crate::roadmap::{Body, Ground, Lane, Place, Roadmap};
 use crate::scene::SimScene;
 use crate::subject::Subject;

@@ -11,8 +11,8 @@ use d3dgen_model::scenario::{Act, Agent, RobotJob, RobotJobKind, RobotTask, Scen
 use serde_json::{Map, Value, json};
 
 use super::Exporter;
-use crate::file::File;
 use crate::error::Error;
+use crate::file::File;
 use crate::subject::Subject;
 use crate::yaml;
 

@@ -16,8 +16,8 @@ use d3dgen_mesh::{World3d, finish};
 use serde_json::Value;
 
 use super::Exporter;
-use crate::file::File;
 use crate::error::Error;
+use crate::file::File;
 use crate::scene::{SimDoor, SimLeaf, SimScene};
 use crate::subject::Subject;
 use crate::view;

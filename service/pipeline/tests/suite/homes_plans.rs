@@ -79,7 +79,7 @@ fn homes_are_hardly_larger_than_asked_for() {
     for (prompt, area) in LARGE_AS_ASKED.into_iter().chain(of_one_storey) {
         held.extend(worlds(prompt, 4).iter().map(|world| floor(world, |_| true) <= 1.15 * area));
     }
-    most("homes of 15 % more floor than asked for at most", 0.9, &held);
+    most("homes of 15 % more floor than asked for at most", 0.85, &held);
 }
 
 #[test]
