@@ -31,10 +31,11 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     ("export", &["model", "mesh"]),
     ("eval", &["model"]),
+    ("physics", &["mesh", "export"]),
     ("plans", &["model"]),
     ("research", &["model", "llm"]),
     ("propose", &["model", "llm", "plugins", "knowledge", "pipeline"]),
-    ("dataset", &["model", "plugins", "pipeline", "export", "eval"]),
+    ("dataset", &["model", "plugins", "pipeline", "export", "eval", "physics"]),
     ("proto", &["model"]),
     (
         "server",
@@ -72,6 +73,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "research",
             "propose",
             "dataset",
+            "physics",
             "proto",
             "server",
         ],
@@ -132,7 +134,8 @@ fn packages_with(counts: impl Fn(&Value) -> bool) -> BTreeMap<String, (PathBuf, 
     let package = |p: &Value| {
         let used = p["dependencies"].as_array().unwrap().iter().filter(|d| counts(d));
         let folder = Path::new(p["manifest_path"].as_str().unwrap()).parent().unwrap().to_path_buf();
-        (text(&p["name"]).replace("d3dgen-", ""), (folder, used.map(|d| text(&d["name"])).collect()))
+        let called = |d: &Value| text(if d["rename"].is_string() { &d["rename"] } else { &d["name"] });
+        (text(&p["name"]).replace("d3dgen-", ""), (folder, used.map(called).collect()))
     };
     metadata["packages"].as_array().unwrap().iter().map(package).collect()
 }
