@@ -55,7 +55,7 @@ pub struct Terms<'a> {
 /// let request = |prompt: &str| Request { prompt: prompt.into(), seed: 3, ..Request::default() };
 /// let world = task::make(&request("flat with one bedroom"), &registry, Terms::default(), &running)?;
 /// assert!(world.expect("there is one").report.sound);
-/// let none = task::make(&request("space station"), &registry, Terms::default(), &running)?;
+/// let none = task::make(&request("office with 3000 rooms"), &registry, Terms::default(), &running)?;
 /// assert_eq!(none.unwrap_err().why, Why::Refused);
 /// # Ok::<(), d3dgen_pipeline::Error>(())
 /// ```
