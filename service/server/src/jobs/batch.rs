@@ -240,7 +240,7 @@ mod tests {
             (infeasible, "floorplan: it is too dense"),
             (Error::Refused { stage: "scene_graph", message: "it is too large".into() }, "it is too large"),
         ] {
-            let kept = outcome(dir.path(), 7, Err(error)).expect("the batch goes on");
+            let kept = outcome(dir.path(), 7, Ok(Err(Failure::of(&error)))).expect("the batch goes on");
             assert!(!kept.sound && kept.seed == 7 && kept.reason.is_some_and(|r| r.contains(reason)), "{reason}");
         }
         let stopped = outcome(dir.path(), 7, Err(Error::Cancelled)).expect_err("it ends");
