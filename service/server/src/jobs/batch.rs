@@ -237,7 +237,7 @@ mod tests {
         let dir = tempfile::tempdir().expect("a folder");
         let infeasible = Error::Infeasible { stage: "floorplan", message: "it is too dense".into() };
         for (error, reason) in [
-            (infeasible, "floorplan: it is too dense"),
+            (infeasible, "it is too dense"),
             (Error::Refused { stage: "scene_graph", message: "it is too large".into() }, "it is too large"),
         ] {
             let kept = outcome(dir.path(), 7, Ok(Err(Failure::of(&error)))).expect("the batch goes on");
