@@ -137,7 +137,7 @@ impl Engine<'_> {
         let meets = |k: usize| {
             let o = &self.movers[k];
             let off = o.at.distance(next);
-            !o.is_settled() && off < o.radius + m.radius - 0.05 && off < o.at.distance(m.at)
+            off < o.radius + m.radius - 0.05 && off < o.at.distance(m.at)
         };
         self.near(m.level, next, 1.0, i).into_iter().any(meets)
     }
