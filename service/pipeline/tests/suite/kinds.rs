@@ -12,7 +12,7 @@ use crate::common::{body, count, in_room, most, named, rooms, worlds};
 const SEEDS: u64 = 2;
 
 /// Prompts with what they count: the rooms, the objects in them, and how many there are in all.
-const COUNTED: [(&str, &str, &str, usize); 11] = [
+const COUNTED: [(&str, &str, &str, usize); 13] = [
     ("gym with a spinning room for 20 bikes", "spinning_studio", "spin_bike", 20),
     ("parking garage for 60 cars", "parking_hall", "parked_car", 60),
     ("dairy barn for 80 cows", "barn_hall", "cow_stall", 80),
@@ -24,6 +24,13 @@ const COUNTED: [(&str, &str, &str, usize); 11] = [
     ("hostel with four eight-bed dorms with bunk beds", "dorm_room", "bunk_bed", 16),
     ("post office with five counters and a sorting room", "post_hall", "teller_counter", 5),
     ("airport terminal with six check-in desks", "check_in_hall", "check_in_desk", 6),
+    ("veterinary clinic with an inpatient room with 9 cages and a reception", "kennel_room", "kennel_cage", 9),
+    (
+        "Tierarztpraxis mit Stationsraum mit 6 Käfigen, zwei Behandlungsräumen und Empfang",
+        "kennel_room",
+        "kennel_cage",
+        6,
+    ),
 ];
 
 /// Prompts with rooms that are told by what is in them.
@@ -36,7 +43,7 @@ const CALLED: [(&str, &str, usize); 5] = [
 ];
 
 /// Prompts of kinds with a room and an object by which one knows them without its label.
-const KNOWN_BY: [(&str, &str, &str); 46] = [
+const KNOWN_BY: [(&str, &str, &str); 48] = [
     ("prison with 12 cells", "guard_post", "control_console"),
     ("Gefängnis mit 8 Zellen", "prison_cell", "combination_wc"),
     ("indoor swimming pool", "pool_hall", "lifeguard_chair"),
@@ -73,6 +80,8 @@ const KNOWN_BY: [(&str, &str, &str); 46] = [
     ("паромный терминал с залом ожидания", "boarding_gate", "ticket_gate"),
     ("stadsarchief met een leeszaal", "archive_store", "mobile_shelving"),
     ("sąd z dwiema salami rozpraw", "courtroom", "judges_bench"),
+    ("recording studio with an editing suite and two vocal booths", "vocal_booth", "stool"),
+    ("녹음 스튜디오, 라이브룸 1개, 편집실 2개, 휴게실", "editing_suite", "control_console"),
     ("radio station with two studios and a control room", "studio_control_room", "control_console"),
     ("музей с двумя выставочными залами и кассой", "ticket_desk", "shop_counter"),
     ("Bäckerei mit Backstube und Verkaufstheke", "bakery_shop", "shop_counter"),
@@ -366,5 +375,30 @@ fn a_lock_that_leads_nowhere_is_said() {
         assert_eq!(rooms(&world, "lab_airlock").count(), 1, "{prompt}");
         let mut said = world.scene_graph.conflicts.iter();
         assert!(said.any(|note| note.code == "lock_leads_nowhere"), "{:?}", world.scene_graph.conflicts);
+    }
+}
+
+/// Prompts with more floor than their rooms need, the room that people are counted for, and how many there are.
+const ROOMY: [(&str, &str, u32); 4] = [
+    (
+        "ferry terminal, 900 m2, with three ticket counters, a waiting hall with 80 seats, left luggage and toilets",
+        "waiting_area",
+        80,
+    ),
+    ("Bibliothek 1200 m2 mit Lesesaal für 20 Personen, zwei Büros und Magazin", "reading_room", 20),
+    ("museo de 800 m2 con una cafetería para 16 personas y dos salas de exposición", "cafe", 16),
+    ("laboratory of 700 m2 with a waiting area for 15 people, two laboratories and an office", "waiting_area", 15),
+];
+/// Most floor for each who waits, reads or eats there in a building with floor to spare, m2.
+const MOST_EACH_M2: f64 = 8.0;
+
+#[test]
+fn floor_to_spare_blows_no_room_up() {
+    for (prompt, kind, people) in ROOMY {
+        for world in worlds(prompt, SEEDS) {
+            let most = rooms(&world, kind).map(|r| r.net_area_m2).fold(0.0, f64::max);
+            assert!(most > 0.0, "{prompt}: no {kind}");
+            assert!(most <= MOST_EACH_M2 * f64::from(people), "{prompt}: {kind} of {most:.0} m2");
+        }
     }
 }
