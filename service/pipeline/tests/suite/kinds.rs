@@ -12,7 +12,7 @@ use crate::common::{body, count, in_room, most, named, rooms, worlds};
 const SEEDS: u64 = 2;
 
 /// Prompts with what they count: the rooms, the objects in them, and how many there are in all.
-const COUNTED: [(&str, &str, &str, usize); 13] = [
+const COUNTED: [(&str, &str, &str, usize); 14] = [
     ("gym with a spinning room for 20 bikes", "spinning_studio", "spin_bike", 20),
     ("parking garage for 60 cars", "parking_hall", "parked_car", 60),
     ("dairy barn for 80 cows", "barn_hall", "cow_stall", 80),
@@ -24,6 +24,12 @@ const COUNTED: [(&str, &str, &str, usize); 13] = [
     ("hostel with four eight-bed dorms with bunk beds", "dorm_room", "bunk_bed", 16),
     ("post office with five counters and a sorting room", "post_hall", "teller_counter", 5),
     ("airport terminal with six check-in desks", "check_in_hall", "check_in_desk", 6),
+    (
+        "dental laboratory with a milling room with 3 milling machines and an office",
+        "dental_milling_room",
+        "dental_mill",
+        3,
+    ),
     ("veterinary clinic with an inpatient room with 9 cages and a reception", "kennel_room", "kennel_cage", 9),
     (
         "Tierarztpraxis mit Stationsraum mit 6 Käfigen, zwei Behandlungsräumen und Empfang",
@@ -43,7 +49,7 @@ const CALLED: [(&str, &str, usize); 5] = [
 ];
 
 /// Prompts of kinds with a room and an object by which one knows them without its label.
-const KNOWN_BY: [(&str, &str, &str); 48] = [
+const KNOWN_BY: [(&str, &str, &str); 50] = [
     ("prison with 12 cells", "guard_post", "control_console"),
     ("Gefängnis mit 8 Zellen", "prison_cell", "combination_wc"),
     ("indoor swimming pool", "pool_hall", "lifeguard_chair"),
@@ -80,6 +86,8 @@ const KNOWN_BY: [(&str, &str, &str); 48] = [
     ("паромный терминал с залом ожидания", "boarding_gate", "ticket_gate"),
     ("stadsarchief met een leeszaal", "archive_store", "mobile_shelving"),
     ("sąd z dwiema salami rozpraw", "courtroom", "judges_bench"),
+    ("Dentallabor mit Gipsraum, Fräsraum und Büro", "dental_plaster_room", "worktop_sink"),
+    ("dental laboratory with a milling room and a ceramics room", "dental_milling_room", "dental_mill"),
     ("recording studio with an editing suite and two vocal booths", "vocal_booth", "stool"),
     ("녹음 스튜디오, 라이브룸 1개, 편집실 2개, 휴게실", "editing_suite", "control_console"),
     ("radio station with two studios and a control room", "studio_control_room", "control_console"),
