@@ -5,7 +5,7 @@ use std::rc::Rc;
 use d3dgen_model::domain::Shape;
 
 use super::{Find, Focus, Rule};
-use crate::geom::{Box2, Solid, mm, turn};
+use crate::geom::{Box2, Solid, turn};
 use crate::seats::is_seat;
 use crate::space::DoorZone;
 use crate::state::{Placed, at_frame};
@@ -46,7 +46,6 @@ impl<'a> Find<'_, 'a, '_> {
         let flat = unit.parts[0].solid.is_flat();
         // seats that nobody asked for stand where one gets at them, or not at all
         let sits = self.task.required == 0 && unit.parts.iter().any(|p| is_seat(p.object.shape));
-        let around = mm(unit.anchor().object.free_around_m).max(if sits { BESIDE } else { 0 });
         let grid = |lo: i32, hi: i32| {
             let step = ((hi - lo) / 14).max(250);
             (0..).map(move |k| lo + k * step).take_while(move |v| *v < hi)
@@ -72,7 +71,7 @@ impl<'a> Find<'_, 'a, '_> {
             for (x, y) in centers.iter().copied().chain(flush) {
                 let (u, v) = turn(4 - q, x - du, y - dv);
                 let placed = at_frame(unit, q, u, v, self.index);
-                if around > 0 && !self.is_open_around(&placed, around) {
+                if sits && !self.is_open_around(&placed, BESIDE) {
                     self.none(Rule::Clearance);
                     continue;
                 }

@@ -97,12 +97,7 @@ pub(super) fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         !of(&p.a) && rules.any(|r| r.relation == AdjacencyRelation::Must && r.a == p.a && r.b == p.b)
     };
     let pairs: Vec<Pair> = reading.wishes.pairs.iter().filter(|p| p.belongs && !beside(p)).cloned().collect();
-    // the only storey that the prompt puts rooms of a type on
-    let storey = |id: &str| {
-        let mut on = reading.storeys.wanted.iter().filter(|w| w.room_type == id).map(|w| w.at);
-        on.next().filter(|_| on.next().is_none())
-    };
-    let storeys: Vec<Option<Where>> = rooms.iter().map(|r| storey(&r.room_type)).collect();
+    let storeys: Vec<Option<Where>> = rooms.iter().map(|r| only_storey(reading, &r.room_type)).collect();
     for i in 0..rooms.len() {
         let room = &rooms[i];
         // "on the second floor a terrace": not that of the living room below
@@ -183,6 +178,12 @@ pub(super) fn hang_on_locks(reading: &mut Reading, rooms: &mut [Planned]) {
     }
 }
 
+/// Returns the only storey that the prompt puts rooms of a type on.
+fn only_storey(reading: &Reading, room_type: &str) -> Option<Where> {
+    let mut on = reading.storeys.wanted.iter().filter(|w| w.room_type == room_type).map(|w| w.at);
+    on.next().filter(|_| on.next().is_none())
+}
+
 /// Returns true for rooms that are there for nothing but to be passed.
 fn is_only_lock(kind: &RoomType) -> bool {
     kind.tags.iter().any(|tag| tag == tags::LOCK)
@@ -197,9 +198,11 @@ fn next_behind(reading: &Reading, rooms: &[Planned], lock: usize) -> Option<usiz
         reading.wishes.pairs.iter().any(|p| named(&p.a, &p.b) || named(&p.b, &p.a))
     };
     let rank = |r: &Planned| kind.locks.iter().position(|id| *id == r.room_type);
+    let storey = only_storey(reading, &rooms[lock].room_type);
+    let elsewhere = |r: &Planned| only_storey(reading, &r.room_type).is_some_and(|at| storey.is_some_and(|s| s != at));
     let free = |r: &Planned| {
         let alike = first.is_none_or(|id| *id == r.room_type);
-        r.host.is_none() && r.kind.zone != Zone::Circulation && alike && rank(r).is_some()
+        r.host.is_none() && r.kind.zone != Zone::Circulation && alike && rank(r).is_some() && !elsewhere(r)
     };
     let candidates = (0..rooms.len()).filter(|&i| i != lock && free(&rooms[i]));
     candidates.min_by_key(|&i| {
