@@ -1,7 +1,6 @@
 //! `d3dgen dataset make`: the worlds of a spec, all of them or one shard, here on every core.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use d3dgen_dataset::assemble::is_finished;
@@ -10,9 +9,10 @@ use d3dgen_dataset::part::{Done, Part, Shard};
 use d3dgen_dataset::shelf::Shelf;
 use d3dgen_dataset::snapshot::Snapshot;
 use d3dgen_dataset::spec::Spec;
+use d3dgen_dataset::standing::WORK;
 use d3dgen_dataset::tasks::Tasks;
 
-use super::{Talk, WORK, check_new, clear_work, disk, finish, go_on, tell};
+use super::{Runs, Talk, check_new, clear_work, disk, finish, tell};
 use crate::commands::assets::Kept;
 use crate::error::Error;
 use crate::input::text;
@@ -145,28 +145,16 @@ impl RunArgs {
         let kept = Kept::of(&self.registry.store)?;
         let maker = Maker::new(&part.spec, &part.snapshot, &kept)?;
         let guard = self.disk.guard(part.folder());
-        let all: u64 = part.own_blocks().map(|b| part.tasks_of(b).count() as u64).sum();
-        let before = part.done();
-        let written = AtomicU64::new(before.iter().map(|d| d.bytes).sum());
-        let finished = AtomicU64::new(before.iter().map(|d| d.worlds + d.failed).sum());
-        let failed = AtomicU64::new(before.iter().map(|d| d.failed).sum());
-        let talk = Talk::of(all);
-        talk.moved(finished.load(Ordering::Relaxed), String::new);
-        let begun = (Instant::now(), finished.load(Ordering::Relaxed));
+        let runs = Runs::of(part);
         let news = |done: Option<&Done>| {
-            go_on()?;
-            let Some(done) = done else { return guard.check(written.load(Ordering::Relaxed)) };
-            let tasks = done.worlds + done.failed;
-            written.fetch_add(done.bytes, Ordering::Relaxed);
-            let lost = failed.fetch_add(done.failed, Ordering::Relaxed) + done.failed;
-            let finished = finished.fetch_add(tasks, Ordering::Relaxed) + tasks;
-            let rate = (finished - begun.1) as f64 / begun.0.elapsed().as_secs_f64().max(1e-3);
-            talk.progress.doing(&format!("{rate:.1} a second, {lost} without a world"));
-            talk.moved(tasks, || format!("{finished} of {all}: {rate:.1} a second, {lost} without a world"));
-            Ok(())
+            runs.go_on()?;
+            match done {
+                None => guard.check(runs.bytes()),
+                done => runs.moved(done, ""),
+            }
         };
         let result = part.run(&maker, self.threads(), interrupt::flag(), &news);
-        talk.progress.finish();
+        runs.talk.progress.finish();
         Ok(result?)
     }
 
