@@ -47,7 +47,7 @@ const HANDLE_M: f64 = 0.6;
 /// Time to sit down or get up, s.
 const ON_OFF_S: f64 = 1.2;
 /// Time without getting on after which one looks for another way, and the way that counts as getting on, m.
-const PATIENCE_S: f64 = 2.0;
+pub const PATIENCE_S: f64 = 2.0;
 const PROGRESS_M: f64 = 0.15;
 /// Longest time that one makes way, s.
 const YIELD_S: f64 = 10.0;
@@ -203,7 +203,9 @@ impl<'e> Engine<'e> {
         let [low, high] = source.group;
         let size = low + source.stream.below((high - low + 1) as usize) as u32;
         // where there is no place for what they would come for, nobody comes
-        let Some(tasks) = source.stream.pick(&open).map(|k| source.itineraries[*k].clone()) else { return };
+        let Some((itinerary, places)) = source.stream.pick(&open).copied() else { return };
+        let tasks = source.itineraries[itinerary].clone();
+        let size = size.min(u32::try_from(places).unwrap_or(u32::MAX));
         let group = (size > 1).then(|| format!("{}_group_{}", source.id, source.count + 1));
         for k in 0..size {
             source.count += 1;
@@ -226,15 +228,20 @@ impl<'e> Engine<'e> {
         }
     }
 
-    /// Returns the itineraries of a source for which there are places left, by index.
-    fn open_itineraries(&self, s: usize) -> Vec<usize> {
+    /// Returns the itineraries of a source for which there are places left, by index, with for how many people.
+    fn open_itineraries(&self, s: usize) -> Vec<(usize, usize)> {
         let source = &self.sources[s];
         if source.next > self.t {
             return Vec::new();
         }
-        let coming = source.waiting.len() + source.group[1] as usize;
-        let has_place = |task: &Task| !matches!(task.act, Act::Sit | Act::Lie) || self.places_left(task) >= coming;
-        (0..source.itineraries.len()).filter(|k| source.itineraries[*k].iter().all(has_place)).collect()
+        let left = |task: &Task| match task.act {
+            Act::Sit | Act::Lie => self.places_left(task).saturating_sub(source.waiting.len()),
+            Act::Stand | Act::Talk => self.floor_left(task),
+            _ => usize::MAX,
+        };
+        let places = |tasks: &Vec<Task>| tasks.iter().map(left).min().unwrap_or(usize::MAX);
+        let all = source.itineraries.iter().map(places).enumerate();
+        all.filter(|(_, places)| *places >= source.group[0] as usize).collect()
     }
 
     fn is_open(&self, level: usize, at: Point, radius: f64, but: Option<usize>) -> bool {

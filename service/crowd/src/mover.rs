@@ -4,6 +4,7 @@ use d3dgen_model::Point;
 use d3dgen_model::scenario::Act;
 use d3dgen_model::trajectory::{Goal, Pause, Sample, Track};
 
+use crate::engine::PATIENCE_S;
 use crate::routes::Leg;
 
 /// Share of its time from which on somebody begins no pause, and the share that it may have stood at the end of one.
@@ -247,6 +248,15 @@ impl Mover {
         let stood: f64 = stood.map(|p| p.to.min(t) - p.from).sum();
         let there = t - self.samples.first().map_or(t, |s| s.t);
         stood <= MOST_STOOD * there.max(1.0) && stood + seconds <= MOST_STOOD_AT_LAST * (there + seconds)
+    }
+
+    /// Notes that it stands behind somebody, for as long as it may.
+    pub fn wait_behind(&mut self, t: f64) {
+        match (self.is_paused(), self.may_stand(t, PATIENCE_S)) {
+            (false, true) => self.begin_pause(t, "queue"),
+            (true, false) => self.end_pause(t),
+            _ => {}
+        }
     }
 
     pub fn begin_pause(&mut self, t: f64, kind: &'static str) {

@@ -38,6 +38,8 @@ pub struct Space {
     zones: Vec<u16>,
     /// By node: distance to the nearest thing or wall, m.
     clear: Vec<f32>,
+    /// By room: floor on which nothing stands, m2.
+    free_floor_m2: Vec<f64>,
 }
 
 /// A passage between two rooms.
@@ -66,8 +68,23 @@ impl Space {
         let (nx, ny) = (count(bounds.width()), count(bounds.height()));
         let origin = Point::new(bounds.x0, bounds.y0);
         let (zones, clear) = (vec![NOWHERE; nx * ny], vec![0.0; nx * ny]);
-        let mut out =
-            Self { level, rooms, outlines, doors, things, obstacles, exit: exit(plan), origin, nx, ny, zones, clear };
+        let exit = exit(plan);
+        let free_floor_m2 = vec![0.0; rooms.len()];
+        let mut out = Self {
+            level,
+            rooms,
+            outlines,
+            doors,
+            things,
+            obstacles,
+            exit,
+            origin,
+            nx,
+            ny,
+            zones,
+            clear,
+            free_floor_m2,
+        };
         out.paint();
         out
     }
@@ -88,6 +105,9 @@ impl Space {
         for n in 0..self.zones.len() {
             if self.zones[n] != NOWHERE {
                 self.clear[n] = self.obstacles.distance(self.point(n), MOST_CLEAR_M) as f32;
+            }
+            if let Some(floor) = self.free_floor_m2.get_mut(usize::from(self.zones[n])) {
+                *floor += STEP_M * STEP_M;
             }
         }
     }
@@ -123,6 +143,11 @@ impl Space {
     /// Returns the room or door of a node.
     pub fn zone(&self, n: usize) -> u16 {
         self.zones[n]
+    }
+
+    /// Returns the floor of a room on which nothing stands, m2.
+    pub fn free_floor_m2(&self, room: usize) -> f64 {
+        self.free_floor_m2[room]
     }
 
     /// Returns how far a node is from things, m, up to a most.

@@ -78,14 +78,7 @@ impl Engine<'_> {
         };
         if blocker.is_some_and(behind) {
             // those behind wait for the one in front, who sorts it out
-            let t = self.t;
-            let m = &mut self.movers[i];
-            match (m.is_paused(), m.may_stand(t, PATIENCE_S)) {
-                (false, true) => m.begin_pause(t, "queue"),
-                (true, false) => m.end_pause(t),
-                _ => {}
-            }
-            return;
+            return self.movers[i].wait_behind(self.t);
         }
         self.movers[i].tries += 1;
         if self.movers[i].tries > MOST_TRIES && !self.movers[i].leaving {
@@ -94,9 +87,9 @@ impl Engine<'_> {
         match blocker {
             None => self.again(i),
             Some(k) if !self.movers[k].is_walking() && self.detour(i) => {}
-            Some(k) => {
-                let _ = self.settles_with(i, k) || self.detour(i) || self.steps_back(i, k);
-            }
+            Some(k) if self.settles_with(i, k) || self.detour(i) || self.steps_back(i, k) => {}
+            // nobody has floor to give, such as a line before a counter: until it moves up
+            Some(_) => self.movers[i].wait_behind(self.t),
         }
     }
 

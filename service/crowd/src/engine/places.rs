@@ -4,13 +4,16 @@ use d3dgen_model::Point;
 use d3dgen_model::scenario::{Act, Station};
 
 use super::{APART_M, DT_S, Engine, FAR_M, GOAL_M, ON_OFF_S, THERE_M, before, seat};
-use crate::mover::{State, Task};
+use crate::mover::{Mover, State, Task};
 use crate::routes::standing;
 use crate::search::search;
 
 /// How far from where one wants to stand another place is looked for, m, and floor before doors on which nobody stays, m.
 const SPOT_M: f64 = 4.0;
 const FROM_DOOR_M: f64 = 0.9;
+/// Free floor of one who stands in a room with others, m2: level of service A of walkways (Fruin 1971), where nobody has to be asked
+/// aside.
+const FLOOR_OF_ONE_M2: f64 = 3.25;
 /// Time after which one looks again whether a line has a place left, s, and how often.
 const WAIT_S: f64 = 6.0;
 const MOST_WAITS: u32 = 40;
@@ -44,6 +47,17 @@ impl Engine<'_> {
             return usize::MAX;
         }
         all.filter(|(k, _)| self.users[*k].is_none()).count()
+    }
+
+    /// Returns how many more people who come in can stand in the room of a task without being in each other's way; never none
+    /// where nobody has come yet.
+    pub(super) fn floor_left(&self, task: &Task) -> usize {
+        let most = (self.spaces[task.level].free_floor_m2(task.room) / FLOOR_OF_ONE_M2).max(1.0) as usize;
+        let stands = |t: &Task| (t.level, t.room) == (task.level, task.room) && matches!(t.act, Act::Stand | Act::Talk);
+        let comes = |m: &&Mover| m.tasks.iter().skip(m.cursor).any(stands);
+        let there = self.movers.iter().filter(|m| m.is_there() && m.exit.is_some());
+        let coming = self.sources.iter().flat_map(|s| &s.waiting);
+        most.saturating_sub(there.chain(coming).filter(comes).count())
     }
 
     /// Returns the counter of a room with the shortest line that has a place left.
@@ -123,7 +137,7 @@ impl Engine<'_> {
         let meets = |k: usize| {
             let o = &self.movers[k];
             let off = o.at.distance(next);
-            !o.is_settled() && off < o.radius + m.radius - 0.05 && off < o.at.distance(m.at)
+            off < o.radius + m.radius - 0.05 && off < o.at.distance(m.at)
         };
         self.near(m.level, next, 1.0, i).into_iter().any(meets)
     }

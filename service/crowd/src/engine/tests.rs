@@ -161,3 +161,52 @@ fn all_of_a_crowd_are_served_though_the_line_has_three_places() {
         assert_eq!((m.done.len(), m.missed), (2, 0), "{} is served", m.id);
     }
 }
+
+#[test]
+fn who_stands_behind_somebody_without_floor_to_give_says_so() {
+    // a dead end of 0.6 m, in which somebody stands who cannot be asked
+    let blocks = [[1.5, 0.0, 12.0, 2.7], [1.5, 3.3, 12.0, 6.0]];
+    let out = Point::new(0.7, 3.0);
+    let mut inner = walker("inner", Point::new(11.5, 3.0), Vec::new());
+    inner.exit = Some((0, out));
+    let mut outer = walker("outer", Point::new(10.8, 3.0), vec![task(out, Act::Stand, 1.0)]);
+    outer.state = State::Busy { until: 50.0 };
+    outer.skips = true;
+    let movers = moved(hall(&blocks), Vec::new(), vec![inner, outer]);
+    let ends: Vec<f64> = movers[0].pauses.iter().flat_map(|p| [p.from, p.to]).take_while(|t| *t < 50.0).collect();
+    let longest = [0.0].iter().chain(&ends).zip(ends.iter().chain(&[50.0])).map(|(a, b)| b - a).fold(0.0, f64::max);
+    assert!(longest < 20.0, "{longest} s without a word: {ends:?}");
+}
+
+#[test]
+fn nobody_comes_into_a_room_that_is_full() {
+    // 12 m2 of floor: three people with room to walk
+    let spaces = [hall(&[[0.0, 0.0, 12.0, 5.0]])];
+    let mut engine = Engine::new(&spaces, &[], Vec::new(), SECONDS);
+    engine.access = vec![vec![vec![true]]];
+    let door = Point::new(0.7, 5.5);
+    engine.sources.push(Source {
+        id: "visitors".into(),
+        role: "visitor".into(),
+        speed: 1.2,
+        level: 0,
+        at: door,
+        per_min: 20.0,
+        most: 12,
+        group: [1, 3],
+        itineraries: vec![vec![task(Point::new(8.0, 5.5), Act::Talk, 40.0)]],
+        access: 0,
+        stream: Stream::new(1, "visitors"),
+        next: 0.0,
+        count: 0,
+        waiting: Vec::new(),
+    });
+    assert!(engine.run(&mut |_| true));
+    let there = |t: f64| {
+        let at = |m: &&Mover| m.samples().first().is_some_and(|s| s.t <= t) && m.done.is_empty();
+        engine.movers.iter().filter(at).count()
+    };
+    assert!(engine.movers.len() > 3, "others come when some have left: {}", engine.movers.len());
+    assert!(engine.movers.iter().filter(|m| m.samples().first().is_some_and(|s| s.t < 40.0)).count() <= 3);
+    assert!(there(30.0) <= 3);
+}
