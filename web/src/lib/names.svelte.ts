@@ -69,7 +69,7 @@ class Names {
   #kindOf(name: string): string | undefined {
     const id = name.toLowerCase().replaceAll(" ", "_");
     const room = this.#labelled.get(name.toLowerCase());
-    return (room && this.of(room)) ?? this.#kinds.get(id) ?? this.#said("rooms", id) ?? this.#said("objects", id) ?? this.#said("robots", id);
+    return (room && this.of(room)) ?? this.#kinds.get(id) ?? this.#said("rooms", id) ?? this.#said("objects", id) ?? this.#said("robots", id) ?? this.#said("buildings", id);
   }
 
   /** Returns the name of a kind of room or thing; its id in words until it is known. */

@@ -81,6 +81,7 @@ function filled(place: string, value: string, patterns: Patterns, speaker: Speak
       return speaker.figure(Number(value));
     case "where":
       return whole(value, patterns.filter((p) => p.places.every((other) => other.startsWith("n"))), speaker);
+    case "building":
     case "rooms":
     case "things":
       return listed(value, speaker);
