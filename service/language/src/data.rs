@@ -69,6 +69,8 @@ pub struct LanguageData {
     pub decimal: char,
     /// True where the noun of a name of several words stands last ("music room"), false where it stands first ("salle de musique").
     pub head_last: bool,
+    /// True where an owner stands before what it owns ("病院の食堂"), false where it stands behind ("the canteen of a hospital").
+    pub owner_first: bool,
     /// Endings that do not count, longest first.
     pub(crate) endings: Vec<Ending>,
     /// Endings of more than one, and what one ends in instead.
@@ -133,6 +135,8 @@ struct LanguageFile {
     decimal: char,
     #[serde(default)]
     head: Head,
+    #[serde(default)]
+    owner_first: bool,
     #[serde(default)]
     endings: Vec<String>,
     #[serde(default)]
@@ -218,6 +222,7 @@ fn language(file: &str, code: &str, text: &str) -> Result<LanguageData, Error> {
         name: read.name,
         decimal: read.decimal,
         head_last: read.head == Head::Last,
+        owner_first: read.owner_first,
         endings,
         plural: read.plural.iter().map(|e| ending(e)).collect(),
         same: read.same.into_iter().map(|(from, to)| (fold(&from), fold(&to))).collect(),

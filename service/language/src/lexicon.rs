@@ -270,6 +270,7 @@ fn bare(code: &str) -> LanguageData {
         name: code.to_owned(),
         decimal: '.',
         head_last: true,
+        owner_first: false,
         endings: Vec::new(),
         plural: Vec::new(),
         same: Vec::new(),

@@ -68,6 +68,12 @@ impl<'l> Reading<'l> {
         self.tokens.get(token).and_then(|t| self.sentences.get(t.sentence)).is_none_or(|s| s.1)
     }
 
+    /// Returns true where an owner stands before what it owns, by the language of a token.
+    pub fn owner_first(&self, token: usize) -> bool {
+        let language = self.tokens.get(token).and_then(|t| self.inflected.get(t.sentence));
+        language.is_some_and(|l| l.data.owner_first)
+    }
+
     /// Returns true where the noun of a run of tokens stands for more than one, as far as its form tells.
     pub fn is_plural(&self, tokens: Range<usize>) -> bool {
         let noun = if self.head_last(tokens.start) { tokens.end.checked_sub(1) } else { Some(tokens.start) };

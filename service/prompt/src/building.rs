@@ -14,6 +14,10 @@ use crate::places::{is_name, parts};
 const NAMED: f64 = 1.0;
 /// How sure a kind is that is named later.
 const LATER: f64 = 0.6;
+/// How sure a kind is that only tells more of another: the airport of an airport hotel.
+const TELLS_MORE: f64 = 0.6;
+/// Small words between two kinds of which one tells more of the other, at most: "office of the brewery".
+const MOST_BETWEEN: usize = 2;
 /// How sure a kind is whose word is also a room.
 const ROOM_TOO: f64 = 0.8;
 /// What an object says of the building it stands in, beside a room.
@@ -25,6 +29,8 @@ const SUGGESTED: f64 = 0.5;
 struct Named {
     node: usize,
     building: AskedBuilding,
+    /// True where it only tells more of another kind that stands beside it.
+    tells_more: bool,
 }
 
 /// The kind of building, the next best ones, and the nodes that name it.
@@ -41,10 +47,11 @@ pub(crate) fn building(registry: &Registry, nodes: &[Rc<Node>], reading: &Readin
     let head = nodes.iter().position(|n| ends_head(n)).unwrap_or(nodes.len());
     let mut named: Vec<Named> = Vec::new();
     for (i, node) in nodes.iter().enumerate() {
-        let Some(confidence) = confidence(nodes, i, head) else { continue };
+        let Some(confidence) = confidence(nodes, i, head, reading) else { continue };
         named.extend(meant(registry, node, reading).into_iter().take(3).enumerate().map(|(n, mut building)| {
             building.confidence = confidence * if n == 0 { 1.0 } else { 0.5 };
-            Named { node: i, building }
+            let tells_more = among_kinds(nodes, i, head, reading) == Some(Among::TellsMore);
+            Named { node: i, building, tells_more }
         }));
     }
     // surest first; of equal ones a kind before a mere domain, then the longer name, then the earlier one
@@ -65,7 +72,7 @@ pub(crate) fn building(registry: &Registry, nodes: &[Rc<Node>], reading: &Readin
 }
 
 /// Returns how sure a word is to name the building, if it may; `head` is where the words end that do.
-fn confidence(nodes: &[Rc<Node>], i: usize, head: usize) -> Option<f64> {
+fn confidence(nodes: &[Rc<Node>], i: usize, head: usize, reading: &Reading) -> Option<f64> {
     let node = &nodes[i];
     // "staff" of an office names those in it
     if refused(nodes, i) || node.is("person", None) {
@@ -79,12 +86,54 @@ fn confidence(nodes: &[Rc<Node>], i: usize, head: usize) -> Option<f64> {
     if room_too && (listed || counted) {
         return None;
     }
-    // "research institute offices": the last noun is the building
-    let after_kind = i > 0 && node.head_last && nodes[i - 1].is("kind", None);
-    let modifies = node.head_last
-        && nodes.get(i + 1).is_some_and(|next| i + 1 < head && next.is("kind", None) && is_room_too(next));
-    let sure = if room_too && !after_kind { ROOM_TOO } else { 1.0 };
-    Some(place * sure * if modifies { ROOM_TOO } else { 1.0 })
+    Some(match among_kinds(nodes, i, head, reading) {
+        Some(Among::Head) => place,
+        Some(Among::TellsMore) => place * TELLS_MORE,
+        None if room_too => place * ROOM_TOO,
+        None => place,
+    })
+}
+
+/// What a kind is beside others that the same name has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Among {
+    /// What is built: the hotel of an "airport hotel", the office of the "bureaux d'un institut".
+    Head,
+    /// What only tells more of that.
+    TellsMore,
+}
+
+/// Returns what a kind is among those that it stands beside; none where it stands alone.
+fn among_kinds(nodes: &[Rc<Node>], i: usize, head: usize, reading: &Reading) -> Option<Among> {
+    let named = nodes.get(..head).filter(|named| i < named.len())?;
+    let before = (0..i).rev().take(1 + MOST_BETWEEN).find(|j| is_kind(&named[*j]));
+    let after = (i + 1..named.len()).take(1 + MOST_BETWEEN).find(|j| is_kind(&named[*j]));
+    let decides = |a: usize, b: usize| is_last_built(&named[a..=b], reading);
+    let over_next = after.and_then(|j| decides(i, j)).map(|last| !last);
+    let over_last = before.and_then(|j| decides(j, i));
+    match (over_last, over_next) {
+        (None, None) => None,
+        (Some(false), _) | (_, Some(false)) => Some(Among::TellsMore),
+        _ => Some(Among::Head),
+    }
+}
+
+fn is_kind(node: &Node) -> bool {
+    node.is("kind", None) || node.is("domain", None)
+}
+
+/// Returns whether of the kinds at both ends of some words the last is what is built; none where they are no one name.
+fn is_last_built(words: &[Rc<Node>], reading: &Reading) -> Option<bool> {
+    let (first, between) = (words.first()?, words.get(1..words.len() - 1)?);
+    let owns = between.iter().any(|n| n.is("particle", Some("of")));
+    let small = |n: &Rc<Node>| n.is("particle", Some("of")) || n.is("particle", Some("article"));
+    match between {
+        [] => Some(first.head_last),
+        _ if !between.iter().all(small) => None,
+        _ if owns => Some(reading.owner_first(first.tokens.start)),
+        // "Büro einer Brauerei"
+        _ => Some(false),
+    }
 }
 
 /// Returns true for a word that names a room or an object as well.
@@ -96,8 +145,9 @@ impl Building {
     /// Takes one more kind that is named: the same once more, or a next best one.
     fn add(&mut self, next: Named, nodes: &[Rc<Node>], head: usize) {
         let same = self.first.as_ref().is_some_and(|f| f.domain == next.building.domain);
-        // "hospital ward", "family house": one building, said twice
-        if same && !is_room_too(&nodes[next.node]) && next.node < head.max(1) && !self.nodes.contains(&next.node) {
+        // "hospital ward", "family house": one building, said twice; an "airport hotel" has one name
+        let one_name = same && !is_room_too(&nodes[next.node]) || next.tells_more;
+        if one_name && next.node < head.max(1) && !self.nodes.contains(&next.node) {
             self.nodes.push(next.node);
             self.first.as_mut().into_iter().for_each(|f| f.words.extend(next.building.words.clone()));
         }
