@@ -71,6 +71,8 @@ pub struct LanguageData {
     pub head_last: bool,
     /// True where an owner stands before what it owns ("病院の食堂"), false where it stands behind ("the canteen of a hospital").
     pub owner_first: bool,
+    /// True where words for how things lie stand behind what they refer to ("資料室の隣に").
+    pub postpositions: bool,
     /// Endings that do not count, longest first.
     pub(crate) endings: Vec<Ending>,
     /// Endings of more than one, and what one ends in instead.
@@ -137,6 +139,8 @@ struct LanguageFile {
     head: Head,
     #[serde(default)]
     owner_first: bool,
+    #[serde(default)]
+    postpositions: bool,
     #[serde(default)]
     endings: Vec<String>,
     #[serde(default)]
@@ -223,6 +227,7 @@ fn language(file: &str, code: &str, text: &str) -> Result<LanguageData, Error> {
         decimal: read.decimal,
         head_last: read.head == Head::Last,
         owner_first: read.owner_first,
+        postpositions: read.postpositions,
         endings,
         plural: read.plural.iter().map(|e| ending(e)).collect(),
         same: read.same.into_iter().map(|(from, to)| (fold(&from), fold(&to))).collect(),

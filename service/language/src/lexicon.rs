@@ -271,6 +271,7 @@ fn bare(code: &str) -> LanguageData {
         decimal: '.',
         head_last: true,
         owner_first: false,
+        postpositions: false,
         endings: Vec::new(),
         plural: Vec::new(),
         same: Vec::new(),

@@ -79,6 +79,12 @@ impl<'l> Reading<'l> {
         language.is_some_and(|l| l.data.owner_first)
     }
 
+    /// Returns true where words for how things lie stand behind what they refer to, by the language of a token.
+    pub fn has_postpositions(&self, token: usize) -> bool {
+        let language = self.tokens.get(token).and_then(|t| self.inflected.get(t.sentence));
+        language.is_some_and(|l| l.data.postpositions)
+    }
+
     /// Returns true where the noun of a run of tokens stands for more than one, as far as its form tells.
     pub fn is_plural(&self, tokens: Range<usize>) -> bool {
         let noun = if self.head_last(tokens.start) { tokens.end.checked_sub(1) } else { Some(tokens.start) };

@@ -15,6 +15,7 @@ use d3dgen_model::brief::{
 
 use self::values::{attributes, bound, count, household, measure, number, place_kind, relation_kind, several};
 use crate::node::Node;
+use crate::reader::is_same;
 use crate::subjects::Known;
 
 /// Parents of a family with children.
@@ -352,9 +353,14 @@ impl Maker<'_> {
             (kind, _) => kind,
         };
         let firsts: Vec<Rc<Node>> = node.all("a").cloned().collect();
-        let seconds: Vec<Rc<Node>> = node.all("b").cloned().collect();
+        let (there, seconds): (Vec<Rc<Node>>, Vec<Rc<Node>>) =
+            node.all("b").cloned().partition(|n| n.is("particle", Some("there")));
         let mut pairs: Vec<(Subject, Subject)> = Vec::new();
-        if seconds.is_empty() {
+        if !there.is_empty() || node.field("there").is_some() {
+            let Some(first) = firsts.first().map(|a| self.subject(a)) else { return self.other(node) };
+            let Some(before) = self.spoken_of_before(&first) else { return self.other(node) };
+            pairs.push((first, before));
+        } else if seconds.is_empty() {
             // "kitchen and living room next to each other"
             pairs.extend(firsts.windows(2).map(|w| (self.subject(&w[0]), self.subject(&w[1]))));
         }
@@ -371,11 +377,26 @@ impl Maker<'_> {
         });
         for (a, b) in pairs {
             let (a, b) = if seen { (b, a) } else { (a, b) };
-            let again = node.field("again").and_then(|r| relation_kind(r));
-            for relation in [Some(kind), again].into_iter().flatten() {
-                self.say(node, Fact::Relation(RelationAsk { a: a.clone(), relation, b: b.clone() }));
+            self.say(node, Fact::Relation(RelationAsk { a: a.clone(), relation: kind, b: b.clone() }));
+            if let Some(relation) = node.field("again").and_then(|r| relation_kind(r)) {
+                let b = node.field("again_b").map_or(b, |n| self.subject(n));
+                self.say(node, Fact::Relation(RelationAsk { a, relation, b }));
             }
         }
+    }
+
+    /// Returns the room that "there" or "beside it" means, said of a room: the one that it was said to lie at just before, else the
+    /// one that was named last.
+    fn spoken_of_before(&self, of: &Subject) -> Option<Subject> {
+        let related = self.facts.last().and_then(|f| match &f.fact {
+            Fact::Relation(r) if is_same(&r.a, of) => Some(&r.b),
+            _ => None,
+        });
+        let named = self.facts.iter().rev().find_map(|f| match &f.fact {
+            Fact::Rooms(rooms) if !is_same(&rooms.room, of) => Some(&rooms.room),
+            _ => None,
+        });
+        related.or(named).cloned()
     }
 
     fn forbidden(&mut self, node: &Node) {

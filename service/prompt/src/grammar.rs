@@ -78,12 +78,14 @@ pub(crate) enum Makes {
     More(String),
 }
 
-/// Where the noun stands in names of several words, for rules that are about them.
+/// Where the noun stands in names of several words, or a relation behind what it refers to, for rules that are about them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Order {
     First,
     Last,
+    Postposed,
+    Preposed,
 }
 
 /// A text and what is asked for in it: the test of a rule.

@@ -25,6 +25,8 @@ pub(crate) struct Node {
     pub mark: bool,
     /// True where names of several words have their noun last.
     pub head_last: bool,
+    /// True where words for how things lie stand behind what they refer to.
+    pub postpositions: bool,
     /// True when nothing stands between it and what comes before.
     pub joined: bool,
     /// True for the form of a word for more than one.
@@ -68,6 +70,7 @@ impl Node {
             text: chunk.text.as_str().into(),
             mark,
             head_last: reading.head_last(chunk.tokens.start),
+            postpositions: reading.has_postpositions(chunk.tokens.start),
             joined: first.joined,
             plural: reading.is_plural(chunk.tokens.clone()),
             capital: first.capital,

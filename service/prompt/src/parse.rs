@@ -82,6 +82,8 @@ fn may_begin(rule: &Rule, node: &Node) -> bool {
     let order = match rule.order {
         Some(Order::First) => !node.head_last,
         Some(Order::Last) => node.head_last,
+        Some(Order::Postposed) => node.postpositions,
+        Some(Order::Preposed) => !node.postpositions,
         None => true,
     };
     order && (rule.first.is_empty() || rule.first.iter().any(|c| node.is(c, None) || (c == "mark" && node.mark)))
@@ -110,6 +112,7 @@ fn made(grammar: &Grammar, candidate: &Candidate, nodes: &[Rc<Node>], from: usiz
         tokens,
         rule: Some(candidate.rule),
         head_last: nodes[from].head_last,
+        postpositions: nodes[from].postpositions,
         joined: nodes[from].joined,
         ..Node::default()
     };

@@ -161,7 +161,7 @@ fn is_counted(rooms: &RoomsAsk) -> bool {
 }
 
 /// Returns true for one room or object under two names.
-fn is_same(a: &Subject, b: &Subject) -> bool {
+pub(crate) fn is_same(a: &Subject, b: &Subject) -> bool {
     match (&a.id, &b.id) {
         (Some(a), Some(b)) => a == b,
         (None, None) => a.name.to_lowercase() == b.name.to_lowercase(),

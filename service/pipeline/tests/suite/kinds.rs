@@ -323,3 +323,48 @@ fn screens_and_stages_are_away_from_where_one_comes_in() {
     }
     most("screens away from the doors", 0.8, &held);
 }
+
+/// Prompts with the lock they name, and what lies behind it, whether they say so or not.
+const LOCKED: [(&str, &str, &str); 7] = [
+    (
+        "veterinary clinic with an isolation room behind an airlock, two exam rooms and a reception",
+        "lab_airlock",
+        "isolation_room",
+    ),
+    ("Labor mit Schleuse, zwei Laborräumen, Umkleide und Pausenraum", "lab_airlock", "laboratory"),
+    ("recording studio with a live room, a control room, a sound lock and a lounge", "sound_lock", "live_room"),
+    ("estudio de grabación con sala de grabación, esclusa acústica y sala de montaje", "sound_lock", "live_room"),
+    ("factory with a clean room, an airlock, an office and a locker room", "lab_airlock", "clean_room"),
+    ("animal shelter with a quarantine and an airlock", "lab_airlock", "animal_quarantine"),
+    (
+        "veterinary clinic with a surgery, a preparation room, an exam room and a reception",
+        "theatre_preparation_room",
+        "vet_surgery",
+    ),
+];
+
+#[test]
+fn what_a_lock_is_there_for_is_entered_through_it_alone() {
+    for (prompt, lock, behind) in LOCKED {
+        for world in worlds(prompt, SEEDS) {
+            let id = |kind: &str| {
+                let rooms = world.floorplan.rooms.iter().filter(|r| r.room_type == kind);
+                rooms.map(|r| r.room_id.clone()).next().unwrap_or_else(|| panic!("{prompt}: no {kind}"))
+            };
+            let (lock, inner) = (id(lock), id(behind));
+            let doors = world.floorplan.doors.iter().filter(|d| d.room_ids.contains(&inner));
+            let from: Vec<&String> = doors.flat_map(|d| &d.room_ids).filter(|id| **id != inner).collect();
+            assert_eq!(from, [&lock], "{prompt}: {behind}");
+        }
+    }
+}
+
+#[test]
+fn a_lock_that_leads_nowhere_is_said() {
+    let prompt = "insurance office with an airlock, three offices, a meeting room and a toilet";
+    for world in worlds(prompt, SEEDS) {
+        assert_eq!(rooms(&world, "lab_airlock").count(), 1, "{prompt}");
+        let mut said = world.scene_graph.conflicts.iter();
+        assert!(said.any(|note| note.code == "lock_leads_nowhere"), "{:?}", world.scene_graph.conflicts);
+    }
+}

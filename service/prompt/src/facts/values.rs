@@ -156,7 +156,8 @@ pub(super) fn relation_kind(node: &Node) -> Option<RelationKind> {
         "open" => "open_to",
         "apart" => "away_from",
         "sight" | "seen" => "sees",
-        "from_only" => "only_from",
+        "from_only" | "only_from_there" => "only_from",
+        "near_there" => "next_to",
         other => other,
     })
 }
