@@ -150,8 +150,9 @@ impl<'d> Known<'d> {
         let whole = own.is_empty() && id.as_ref().is_some_and(|id| self.rooms.contains(id));
         let Some(likely) = (class == "room" && !whole).then(told).flatten() else {
             // "viewing gallery": called so, and furnished as what its noun names
-            let lent = id.clone().filter(|_| strange);
-            lent.into_iter().for_each(|id| drop(self.told_by_a_part.borrow_mut().insert(name.clone(), id)));
+            if let Some(lent) = id.clone().filter(|_| strange) {
+                self.told_by_a_part.borrow_mut().insert(name.clone(), lent);
+            }
             return Subject { id, name };
         };
         self.told_by_a_part.borrow_mut().insert(name.clone(), likely.to_owned());
