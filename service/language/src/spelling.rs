@@ -93,13 +93,13 @@ fn is_slip(word: &str, meant: &str, slips: usize) -> bool {
         return same >= SURE && !is_longer && !replaced;
     }
     let doubled = || same > 0 && written.get(same) == written.get(same - 1);
-    match written.len() {
-        // the form of one word, which the endings of a language would have told
-        0..=MEDIUM if is_longer && more.iter().chain(&less).all(|c| ENDINGS.contains(*c)) => false,
-        0..=SHORT => more.is_empty() || less.is_empty() && doubled(),
-        ..=MEDIUM => more.is_empty() || less.is_empty(),
-        _ => true,
+    if written.len() > MEDIUM {
+        return true;
     }
+    // the form of one word, which the endings of a language would have told
+    let form = is_longer && more.iter().chain(&less).all(|c| ENDINGS.contains(*c));
+    let longer = written.len() <= SHORT && !doubled();
+    !form && (more.is_empty() || less.is_empty() && !longer)
 }
 
 /// Returns the letters that one word has more of than another.
