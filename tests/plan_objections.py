@@ -26,6 +26,7 @@ WORK_CHAIRS = {"swivel_chair", "task_chair"}
 VISITOR_SEATS = {"lounge_chair", "lounge_sofa", "visitor_chair"}
 HOUSES = {"house", "terraced_house", "tiny_house", "villa"}
 ATTACHED = {"flat", "one_bedroom_flat", "small_flat", "shared_flat", "studio", "terraced_house"}
+LOCKS = {"anteroom", "lab_airlock", "sound_lock"}
 TOILETS = {"accessible_wc", "toilet", "wc_cubicle"}
 EAST, NORTH, WEST, SOUTH = range(4)
 GRAZE = 0.02
@@ -181,6 +182,15 @@ def outlines(bodies):
 def no_door(world):
     """a room without a door"""
     return any(not room.doors for room in world.rooms)
+
+
+@objection("A")
+def blind_lock(world):
+    """a lock with nothing behind it: no room is entered through it alone"""
+    ways = {r.id for r in world.rooms if r.circulation}
+    onto = {r.id: {i for d in r.doors for i in d["room_ids"]} - {r.id} for r in world.rooms}
+    alone = {i for i, others in onto.items() if i not in ways and not others & ways}
+    return any(not onto[lock.id] & alone for lock in world.of(*LOCKS))
 
 
 @objection("B")

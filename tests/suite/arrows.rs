@@ -51,6 +51,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "export",
             "crowd",
             "research",
+            "dataset",
             "proto",
         ],
     ),

@@ -24,6 +24,12 @@ test("rooms, things, people and rules have German names", { skip }, async () => 
   const same = new Set(["sofa", "laptop", "monitor", "toilet", "radiator"]); // a word of both languages
   assert.deepEqual([...things].filter((name) => ids.includes(name.toLowerCase()) && !same.has(name.toLowerCase())), []);
 
+  // what was assumed, and why a wish is not met
+  await page.locator('[data-testid="asked-got"] summary').click();
+  const notes = await page.locator('[data-testid="asked-got"] :is(.notes li, .reason)').allTextContents();
+  assert.ok(notes.length > 0);
+  assert.deepEqual(notes.filter((note) => /\b(the|were|rooms|added|asked|not)\b/.test(note)), []);
+
   await page.getByTestId("stage-rules").click();
   const titles = await page.locator('[data-testid="rules-list"] .title').allTextContents();
   assert.ok(titles.length > 80);

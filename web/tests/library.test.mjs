@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { test } from "node:test";
 
-import { browser, opened, server, skip, sound, withBrowserAndServer } from "./support.mjs";
+import { browser, opened, runProgram, Server, server, skip, sound, withBrowserAndServer } from "./support.mjs";
 
 withBrowserAndServer();
 
@@ -86,4 +86,23 @@ test("a kind of building of one's own: its problems by place, then registered an
   kind.remove();
   sound(faults);
   await context.close();
+});
+
+test("a data set that somebody makes in the server's folder is seen with its figures and what came to no world", { skip }, async () => {
+  const home = mkdtempSync(join(tmpdir(), "d3dgen-sets-"));
+  const spec = join(home, "wards.toml");
+  writeFileSync(spec, 'name = "wards"\nseeds = 8\nprompts = [{ text = ["flat", "office with 3000 rooms"] }]\n');
+  // a shard waits to be merged: it is there, and nobody adds to it
+  runProgram("dataset", "make", spec, "--shard", "0/4", "--block", "2", "--out", join(home, "sets", "wards"));
+  const watching = await new Server().start(`data_sets = [${JSON.stringify(join(home, "sets"))}]`);
+  const { page, context, faults } = await opened(browser, watching.url);
+  await page.getByTestId("stage-library").click();
+  const row = page.locator('[data-job-id="data_set/0/wards"]');
+  await row.getByText("4 tasks done of 4: 2 worlds, 2 without one").waitFor();
+  await row.getByTestId("job-log").click();
+  assert.match(await row.getByTestId("job-lines").innerText(), /office with 3000 rooms[^]*500 at most/);
+  sound(faults);
+  await context.close();
+  await watching.remove();
+  rmSync(home, { recursive: true });
 });

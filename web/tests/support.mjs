@@ -1,6 +1,6 @@
 /** A real server, a real browser, and what every test looks at afterwards: errors on the console and breaches of the policy. */
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
+import { execFileSync, spawn } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { extname, join, resolve } from "node:path";
@@ -64,6 +64,11 @@ export class Server {
     await this.kill();
     rmSync(this.#home, { recursive: true, force: true });
   }
+}
+
+/** Runs the program to its end. */
+export function runProgram(...flags) {
+  execFileSync(PROGRAM, flags, { stdio: "ignore", env: { ...process.env, D3DGEN_STORE: "" } });
 }
 
 export function launch() {

@@ -17,6 +17,7 @@ pub mod row;
 pub mod shelf;
 pub mod snapshot;
 pub mod spec;
+pub mod standing;
 pub mod tasks;
 pub mod verify;
 

@@ -19,6 +19,7 @@ use crate::maker::{Maker, Outcome};
 use crate::pack::{block, write_whole};
 use crate::snapshot::Snapshot;
 use crate::spec::Spec;
+use crate::standing;
 use crate::tasks::{Task, TaskId, Tasks};
 
 /// Name of the spec's file.
@@ -127,6 +128,7 @@ impl Part {
         let lock = Some(lock(folder)?);
         if folder.join(ABOUT).exists() {
             mend_ledger(folder)?;
+            standing::begin(folder);
             let part = Self { _lock: lock, ..Self::open(folder)? };
             // a run that goes on keeps its blocks, whatever their size
             let same = About { tasks_per_block: part.about.tasks_per_block, ..about };
@@ -213,6 +215,29 @@ impl Part {
     /// Returns the numbers of this shard's blocks.
     pub fn own_blocks(&self) -> impl Iterator<Item = u64> {
         (self.about.shard..self.blocks()).step_by(self.about.shards as usize)
+    }
+
+    /// Returns how many tasks this shard has.
+    pub fn own_tasks(&self) -> u64 {
+        self.own_blocks().map(|b| self.tasks_of(b).count() as u64).sum()
+    }
+
+    /// Returns true while a run adds to it.
+    ///
+    /// # Errors
+    /// `Read` when the system does not say.
+    pub fn is_held(&self) -> Result<bool, Error> {
+        let path = self.folder.join(LOCK);
+        let file = match fs::File::open(&path) {
+            Ok(file) => file,
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(false),
+            Err(e) => return Err(Error::read(&path)(e)),
+        };
+        match file.try_lock_shared() {
+            Ok(()) => Ok(false),
+            Err(fs::TryLockError::WouldBlock) => Ok(true),
+            Err(fs::TryLockError::Error(source)) => Err(Error::read(&path)(source)),
+        }
     }
 
     /// Returns the numbers of the tasks of a block.

@@ -204,6 +204,27 @@ pub fn failures(folder: &Path) -> Result<Vec<Failure>, Error> {
     text.lines().map(|line| json(&path, line.as_bytes())).collect()
 }
 
+/// Returns the tasks of a part's finished blocks that came to no world, the first `most` of them.
+///
+/// # Errors
+/// `Read`, `Damaged`.
+pub fn failures_of(part: &Part, most: usize) -> Result<Vec<Failure>, Error> {
+    let mut found = Vec::new();
+    for done in part.done().iter().filter(|d| d.failed > 0) {
+        let path = part.block_file(done.block);
+        scan(&path, 0, &mut |member| {
+            if member.key().is_some_and(|(_, ext)| ext == FAILURE) {
+                found.push(json(&path, &member.read().map_err(Error::read(&path))?)?);
+            }
+            Ok(found.len() < most)
+        })?;
+        if found.len() >= most {
+            break;
+        }
+    }
+    Ok(found)
+}
+
 fn json<T: serde::de::DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, Error> {
     serde_json::from_slice(bytes)
         .map_err(|e| Error::damaged(path, format!("has a line or member that cannot be read: {e}")))

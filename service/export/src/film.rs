@@ -75,11 +75,11 @@ impl Frame {
     }
 }
 
-/// Returns the film as an animated PNG.
+/// Returns the film of the first `seconds` as an animated PNG: who is still on its way then is followed no further.
 ///
 /// # Errors
 /// `Picture` when the encoder refuses it: a bug of ours.
-pub fn film(world: &World, trajectory: &Trajectory) -> Result<Vec<u8>, Error> {
+pub fn film(world: &World, trajectory: &Trajectory, seconds: f64) -> Result<Vec<u8>, Error> {
     let roles: Vec<&str> =
         trajectory.agents.iter().map(|t| t.role.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
     let kinds: Vec<&str> =
@@ -92,7 +92,7 @@ pub fn film(world: &World, trajectory: &Trajectory) -> Result<Vec<u8>, Error> {
     let base = raster(&svg, width, height)?;
     let digits = digits()?;
     let end = trajectory.agents.iter().chain(&trajectory.robots).filter_map(|t| t.samples.last()).map(|s| s.t);
-    let end = end.fold(0.0, f64::max);
+    let end = end.fold(0.0, f64::max).min(seconds);
     let step = STEP_S.max(end / MOST_FRAMES as f64);
     let count = (end / step) as usize + 1;
     let start = trajectory.hour.as_deref().and_then(hours::get).map_or(0, |h| seconds_of(&h.clock));
@@ -262,14 +262,21 @@ fn palette() -> Vec<u8> {
     out
 }
 
+/// Returns how wide a sign of the clock is: digits all alike, so that it stands still.
+fn digit_px(sign: char) -> usize {
+    if sign == ':' { 9 } else { 17 }
+}
+
 fn digits() -> Result<BTreeMap<char, Canvas>, Error> {
     let font = Font::new(Weight::SemiBold);
     let draw = |c: char| {
         let mut svg = String::from(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"15\" height=\"28\"><rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>",
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"17\" height=\"28\"><rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>",
         );
-        text(&mut svg, &font, &c.to_string(), (if c == ':' { 4.0 } else { 1.0 }, 23.0), 26.0);
-        Ok((c, raster(&(svg + "</svg>"), 15, 28)?))
+        let text_of = c.to_string();
+        let left = (digit_px(c) as f64 - font.width(&text_of, 26.0)) / 2.0;
+        text(&mut svg, &font, &text_of, (left, 23.0), 26.0);
+        Ok((c, raster(&(svg + "</svg>"), digit_px(c), 28)?))
     };
     "0123456789:".chars().map(draw).collect()
 }
@@ -285,7 +292,7 @@ fn clock(canvas: &mut Canvas, digits: &BTreeMap<char, Canvas>, seconds: u32, x: 
                 canvas.set((left + i) as i64, (j + 12) as i64, digit.pixels[j * digit.width + i]);
             }
         }
-        left += if c == ':' { 9 } else { digit.width };
+        left += digit.width;
     }
 }
 

@@ -224,6 +224,7 @@ pub(crate) fn plain(id: &str, size_m: [f64; 3], mount: Mount) -> ObjectType {
         clearance_side_m: 0.0,
         clear_sides: 0,
         elbow_room_m: 0.0,
+        free_around_m: 0.0,
         surface: false,
         top_taken: Vec::new(),
         shape: Shape::Box,

@@ -1,6 +1,7 @@
 //! Words written as one: "Vierbettzimmer", "Meisterbüro", "einundzwanzig".
 
-use crate::fold::fold_char;
+use crate::chunks::{Chunk, Sense};
+use crate::fold::{fold_char, is_hangul};
 use crate::lexicon::Language;
 use crate::tokens::{Token, TokenKind};
 
@@ -12,6 +13,11 @@ const SHORTEST: usize = 3;
 const HEAD: usize = 4;
 /// Longest word that is taken apart.
 const LONGEST: usize = 60;
+
+/// Classes of words for rooms, which are named by what stands before them in one word.
+const ROOMS: &[&str] = &["room", "room_word"];
+/// Classes that mean in a compound what they mean elsewhere: a "Billardraum" has what it is named for, a "Damendusche" is for them.
+const KEPT: &[&str] = &["sex", "attribute", "object", "unbuilt", "style"];
 
 /// Takes compounds apart that have no entry of their own; `known` says which tokens have one.
 pub(crate) fn split(tokens: &mut Vec<Token>, text: &str, language: &Language, known: impl Fn(usize) -> bool) {
@@ -128,7 +134,111 @@ fn tail(letters: &Letters, language: &Language) -> Option<Vec<(usize, usize)>> {
     let length = letters.folded.len();
     (SHORTEST..=length.checked_sub(HEAD)?).find_map(|from| {
         let word: String = letters.folded[from..].iter().collect();
+        // "bereikbaar" has no bar at its end
+        if length - from == HEAD && !language.vocabulary.has(&word) {
+            return None;
+        }
         let head = language.word(&word)?.iter().any(|e| HEADS.contains(&&*e.class));
         head.then(|| vec![(0, from), (from, length)])
     })
+}
+
+/// Makes one name of each word that is several: what its parts mean by themselves is not meant in it.
+///
+/// A "Büroküche" is no office, a "clubbar" no club and a "Käsetheke" a counter; a "Reifekeller" is a room as other cellars are a
+/// storey. Words that begin with a number say how many, and stay as they are: "Vierbettzimmer".
+pub(crate) fn as_one_name<'l>(chunks: Vec<Chunk<'l>>, tokens: &[Token]) -> Vec<Chunk<'l>> {
+    let mut named: Vec<Chunk<'l>> = Vec::with_capacity(chunks.len());
+    let mut word: Vec<Chunk<'l>> = Vec::new();
+    for chunk in chunks {
+        if word.last().is_some_and(|last| !is_one_word(last, &chunk, tokens)) {
+            named.append(&mut one_name(std::mem::take(&mut word), tokens));
+        }
+        word.push(chunk);
+    }
+    named.append(&mut one_name(word, tokens));
+    named
+}
+
+/// Returns true for two runs of tokens that are written as one word.
+fn is_one_word(a: &Chunk, b: &Chunk, tokens: &[Token]) -> bool {
+    let (last, first) = (&tokens[a.tokens.end - 1], &tokens[b.tokens.start]);
+    let script = |t: &Token| match t.kind {
+        TokenKind::Word => true,
+        // of the scripts without letters only this one sets spaces between words
+        TokenKind::Sign => t.text.chars().all(is_hangul),
+        _ => false,
+    };
+    first.joined && first.kind == last.kind && script(first) && script(last)
+}
+
+/// Takes from the parts of one word before its head what they mean elsewhere.
+fn one_name<'l>(word: Vec<Chunk<'l>>, tokens: &[Token]) -> Vec<Chunk<'l>> {
+    let Some(first) = word.first().filter(|first| word.len() > 1 && !counts(first, tokens)) else { return word };
+    let spaced = tokens[first.tokens.start].kind == TokenKind::Sign;
+    let mut word = if spaced { without_syllables(word) } else { word };
+    let is_room = |c: &Chunk| ROOMS.iter().any(|class| c.has(class));
+    // behind the head of a Korean word stand particles
+    let head = if spaced { word.iter().rposition(is_room) } else { word.len().checked_sub(1) };
+    let Some(head) = head.filter(|head| *head > 0) else { return word };
+    let is_storey = |s: &Sense| s.class == "storey" && s.value != "word";
+    let (thing, storey) = (word[head].has("object"), word[head].senses.iter().any(is_storey));
+    if !(thing || storey || is_room(&word[head])) {
+        return word;
+    }
+    word[..head].iter_mut().for_each(|part| part.senses.retain(|s| KEPT.contains(&s.class)));
+    let nameless = word[..head].iter().all(Chunk::is_unknown);
+    if spaced && nameless && word[head].tokens.len() == 2 && word[0].tokens.end == word[head].tokens.start {
+        with_longer_name(&mut word, head);
+    } else if thing && nameless {
+        let tokens = word[0].tokens.start;
+        let before: String = word.drain(..head).map(|part| part.text).collect();
+        word[0].tokens.start = tokens;
+        word[0].text.insert_str(0, &before);
+    } else if storey && nameless {
+        let language = word[head].senses[0].language;
+        word[head].senses.retain(|s| ROOMS.contains(&s.class));
+        if word[head].senses.is_empty() {
+            word[head].senses.push(Sense { class: "room_word", value: "room", language, exact: true });
+        }
+    }
+    word
+}
+
+/// Gives all but the last syllable of a room to a single one before it, where that makes its name: "탕전실" is a room for "탕전", and
+/// no "전실" of anything.
+fn with_longer_name(word: &mut [Chunk], head: usize) {
+    let [name, room] = &mut word[head - 1..=head] else { return };
+    if name.tokens.len() != 1 {
+        return;
+    }
+    let language = room.senses[0].language;
+    let last = room.text.char_indices().last().map_or(0, |(at, _)| at);
+    let room_text = room.text.split_off(last);
+    name.text.push_str(&std::mem::replace(&mut room.text, room_text));
+    (name.tokens.end, room.tokens.start) = (room.tokens.end - 1, room.tokens.end - 1);
+    room.senses = vec![Sense { class: "room_word", value: "room", language, exact: true }];
+}
+
+/// Returns true for words that begin with a number, or stand right behind one: "7인실".
+fn counts(first: &Chunk, tokens: &[Token]) -> bool {
+    let at = first.tokens.start;
+    let behind = tokens[at].joined && at > 0 && tokens[at - 1].kind == TokenKind::Number;
+    behind || ["number", "quantity", "ordinal"].iter().any(|class| first.has(class))
+}
+
+/// Joins single syllables to the word that nobody knows which goes on behind them: "약재" is not about something.
+fn without_syllables(word: Vec<Chunk>) -> Vec<Chunk> {
+    let mut joined: Vec<Chunk> = Vec::with_capacity(word.len());
+    for chunk in word.into_iter().rev() {
+        match joined.last_mut() {
+            Some(behind) if behind.is_unknown() && (chunk.tokens.len() == 1 || chunk.is_unknown()) => {
+                behind.tokens.start = chunk.tokens.start;
+                behind.text.insert_str(0, &chunk.text);
+            }
+            _ => joined.push(chunk),
+        }
+    }
+    joined.reverse();
+    joined
 }

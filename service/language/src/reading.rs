@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use crate::chunks::{Chunk, Sense};
-use crate::compounds::split;
+use crate::compounds::{as_one_name, split};
 use crate::detect::{Detected, detect};
+use crate::fold::fold;
 use crate::lexicon::{ANY, Language, Lexicon, Match};
 use crate::numbers;
 use crate::tokens::{Token, TokenKind, tokens};
@@ -19,6 +20,10 @@ const FOREIGN: (f64, f64) = (0.9, 0.6);
 const INFLECTED: f64 = 0.95;
 /// Shortest word that is understood amid another language, in letters.
 const FOREIGN_LETTERS: usize = 4;
+/// Shortest sign that is: "机" is a desk in one language, and any machine in the other.
+const FOREIGN_SIGNS: usize = 2;
+/// Shortest word with accents that may be misspelled, in letters.
+const MARKED_LETTERS: usize = 7;
 
 /// A word that was read as another one.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -110,13 +115,13 @@ impl Lexicon {
         let mut tokens = tokens(text);
         let mut matches = self.matches(&tokens);
         let detected = detect(self, text, &tokens, &matches);
-        let misspellings = self.mend(&mut tokens, &matches, &detected);
+        let misspellings = self.mend(&mut tokens, text, &matches, &detected);
         let before = tokens.len();
         self.take_apart(&mut tokens, text, &detected, if misspellings.is_empty() { Some(&matches) } else { None });
         if tokens.len() != before || !misspellings.is_empty() {
             matches = self.matches(&tokens);
         }
-        let chunks = self.chunks(&tokens, &matches, &detected);
+        let chunks = as_one_name(self.chunks(&tokens, &matches, &detected), &tokens);
         let language = |t: usize| self.languages.get(detected.sentences.get(tokens[t].sentence).copied().unwrap_or(0));
         let chunks = numbers::join(chunks, &tokens, |t| language(t).map_or('.', |l| l.data.decimal));
         let sentences = detected
@@ -131,7 +136,7 @@ impl Lexicon {
     }
 
     /// Spells words right that nobody knows.
-    fn mend(&self, tokens: &mut [Token], matches: &[Match], detected: &Detected) -> Vec<Misspelling> {
+    fn mend(&self, tokens: &mut [Token], text: &str, matches: &[Match], detected: &Detected) -> Vec<Misspelling> {
         let known = known(tokens.len(), matches);
         let mut mended = Vec::new();
         // texts in a language that nobody reads are full of words that look like others
@@ -144,6 +149,11 @@ impl Lexicon {
                 continue;
             }
             let language = &self.languages[detected.sentences[token.sentence]];
+            // "Käse" is no "Kasse": a short word that sets its marks is spelled with care
+            let short = token.chars.len() < MARKED_LETTERS;
+            if short && fold(&text[token.bytes.clone()]) != text[token.bytes.clone()].to_lowercase() {
+                continue;
+            }
             // a compound is taken apart, not mended
             let meant = asked
                 .entry(token.text.clone())
@@ -240,6 +250,7 @@ impl Lexicon {
         let weight = match () {
             () if own => 1.0,
             () if letters < FOREIGN_LETTERS && run[0].kind == TokenKind::Word => return None,
+            () if letters < FOREIGN_SIGNS => return None,
             () if !self.senses(found, tokens).any(|s| self.travels.iter().any(|c| c == s.class)) => return None,
             () if detected.sentences.contains(&found.language) => FOREIGN.0,
             () => FOREIGN.1,

@@ -166,6 +166,11 @@ impl Scan<'_> {
                 self.at += 1;
                 return;
             }
+            // "elders' lounge": whose it is
+            None if APOSTROPHES.contains(&c) && before.is_some_and(char::is_alphabetic) => {
+                self.at += 1;
+                return;
+            }
             Some(".") if c == '.' && !self.dot_ends_sentence() => {
                 self.at += 1;
                 return;
@@ -263,6 +268,7 @@ mod tests {
         check("two 4-bed rooms, 28m²", &["two", "4", "bed", "rooms", ",", "28", "m2"]);
         check("2LDK, T4 1,200.5 m2", &["2", "ldk", ",", "t4", "1,200.5", "m2"]);
         check("salle d'attente, women's WC", &["salle", "d", "attente", ",", "womens", "wc"]);
+        check("elders' lounge", &["elders", "lounge"]);
         check("ca. 50 sq. m. Flur", &["ca", "50", "sq", "m", ".", "flur"]);
         check("三室一厅，90平米", &["三", "室", "一", "厅", ",", "90", "平", "米"]);
         check("3 x 4 – 2-3", &["3", "x", "4", "-", "2", "-", "3"]);

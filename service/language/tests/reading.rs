@@ -71,7 +71,7 @@ fn inflected_words_meet_their_entry() {
 
 #[test]
 fn scripts_without_spaces_are_taken_apart() {
-    check("zh", "两间卧室和厨房", &["2", "classifier.thing", "room.bedroom", "particle.and", "room.kitchen"]);
+    check("zh", "两间卧室和厨房", &["2", "classifier.place", "room.bedroom", "particle.and", "room.kitchen"]);
     check("ja", "会議室2つとキッチン", &["room.meeting_room", "2", "classifier.thing", "particle.and", "room.kitchen"]);
     check("ko", "회의실 3개와 로봇", &["room.meeting_room", "3", "classifier.thing", "particle.and", "robot.any"]);
 }

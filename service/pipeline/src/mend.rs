@@ -116,6 +116,7 @@ fn remove(graph: &mut SceneGraph, id: &str) {
     let behind: Vec<String> = graph.edges.iter().filter(behind).map(|e| e.a.clone()).collect();
     graph.rooms.retain(|r| r.id != id);
     graph.edges.retain(|e| e.a != id && e.b != id);
+    graph.apart.retain(|pair| pair.iter().all(|room| room != id));
     for room in behind {
         let reached = graph.edges.iter().any(|e| e.required && (e.a == room || e.b == room));
         let circulates = graph.room(&room).is_none_or(|r| r.circulation);
@@ -191,10 +192,13 @@ mod tests {
     #[test]
     fn a_room_that_breaks_rules_at_last_is_left_out_and_named() {
         let made = flat();
-        let (graph, world) = (&made.world.scene_graph, &made.world);
+        let mut graph = made.world.scene_graph.clone();
+        graph.apart.push(["walk_in_closet_1".into(), "living_room_1".into()]);
+        let (graph, world) = (&graph, &made.world);
         let without = |subject: &str| without_broken(graph, world, &broken(&made.report, "wall_gap", subject, None));
         let less = without("walk_in_closet_1").expect("it can be left out");
         assert!(less.room("walk_in_closet_1").is_none());
+        assert_eq!(less.apart, Vec::<[String; 2]>::new(), "nothing is kept apart from it any more");
         assert!(less.conflicts.last().is_some_and(|n| n.message.contains("left out")));
         assert_eq!(less.check(), vec![]);
         assert_eq!(without("hallway_1"), None, "the building is none without it");

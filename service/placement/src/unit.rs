@@ -483,6 +483,11 @@ pub(crate) fn clears_of(part: &Part, tightness: f64, out: &mut Vec<Box2>) {
     if part.object.shape == Shape::Shower && part.solid.is_flat() {
         add(own);
     }
+    // one works on all sides of an island, so nothing stands in the way later either
+    let around = mm(part.object.free_around_m);
+    if around > 0 {
+        add(own.grown(around));
+    }
     if front > 0 {
         add(Box2 { x0: own.x1, x1: own.x1 + front, ..own });
     }

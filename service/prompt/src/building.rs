@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use d3dgen_language::Reading;
+use d3dgen_language::{Reading, TokenKind};
 use d3dgen_model::brief::{AskedBuilding, AskedPlace, PromptWords};
 use d3dgen_plugins::Registry;
 
@@ -83,7 +83,12 @@ fn confidence(nodes: &[Rc<Node>], i: usize, head: usize, reading: &Reading) -> O
     // a room that a list names is a room: "shop", "gym", "library"
     let listed = i >= head && i > 0;
     let counted = i > 0 && nodes[i - 1].number.is_some_and(|n| n > 1.0);
-    if room_too && (listed || counted) {
+    // "botenloods", "clubbar": nor does a part of a word name a building there
+    if listed && is_part_of_word(nodes, i, reading) {
+        return None;
+    }
+    // "four bankjes" in a list are no bank
+    if listed && counted || room_too && (listed || counted) {
         return None;
     }
     Some(match among_kinds(nodes, i, head, reading) {
@@ -92,6 +97,13 @@ fn confidence(nodes: &[Rc<Node>], i: usize, head: usize, reading: &Reading) -> O
         None if room_too => place * ROOM_TOO,
         None => place,
     })
+}
+
+/// Returns true for a part of a longer word, in scripts that set spaces between words.
+fn is_part_of_word(nodes: &[Rc<Node>], i: usize, reading: &Reading) -> bool {
+    let is_word = |n: &Rc<Node>| reading.tokens()[n.tokens.start].kind == TokenKind::Word;
+    let goes_on = |a: usize| nodes.get(a..a + 2).is_some_and(|n| n.iter().all(is_word) && n[1].joined);
+    goes_on(i) || i.checked_sub(1).is_some_and(goes_on)
 }
 
 /// What a kind is beside others that the same name has.

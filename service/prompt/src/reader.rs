@@ -169,6 +169,12 @@ pub(crate) fn is_same(a: &Subject, b: &Subject) -> bool {
     }
 }
 
+/// Returns true where a room has in its name what another is called.
+fn is_called_so(a: &Subject, b: &Subject) -> bool {
+    let (a, b) = (a.name.to_lowercase(), b.name.to_lowercase());
+    a.contains(&b) || b.contains(&a)
+}
+
 /// Returns the rooms or objects that a fact asks for.
 fn subject_of(fact: &Fact) -> Option<&Subject> {
     match fact {
@@ -209,10 +215,10 @@ impl Elsewhere {
         let open = rooms_of(stated).is_some_and(|r| !is_counted(r) && !r.among) && !stated.own;
         let one_of = || self.numbered.iter().any(|(room, at)| is_same(room, subject) && *at != stated.tokens);
         let kind = std::mem::discriminant(&stated.fact);
-        let again = |k: &Stated| {
-            std::mem::discriminant(&k.fact) == kind && subject_of(&k.fact).is_some_and(|other| is_same(other, subject))
-        };
-        let spoken_of = || self.asked.iter().any(|a| is_same(a, subject)) || kept.iter().any(again);
+        // "beside the bride's waiting room": of several waiting rooms the one that is called so
+        let meant = |a: &Subject| is_same(a, subject) && (!stated.own || is_called_so(a, subject));
+        let again = |k: &Stated| std::mem::discriminant(&k.fact) == kind && subject_of(&k.fact).is_some_and(meant);
+        let spoken_of = || self.asked.iter().any(meant) || kept.iter().any(again);
         open && one_of() || stated.mention && spoken_of()
     }
 }

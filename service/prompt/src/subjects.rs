@@ -148,7 +148,13 @@ impl<'d> Known<'d> {
         let told = || likely::room_called(&name, id.as_deref(), reading.languages(), |room| self.rooms.contains(room));
         // "home office", "chambre d'amis": the building's own name for it
         let whole = own.is_empty() && id.as_ref().is_some_and(|id| self.rooms.contains(id));
-        let Some(likely) = (class == "room" && !whole).then(told).flatten() else { return Subject { id, name } };
+        let Some(likely) = (class == "room" && !whole).then(told).flatten() else {
+            // "viewing gallery": called so, and furnished as what its noun names
+            if let Some(lent) = id.clone().filter(|_| strange) {
+                self.told_by_a_part.borrow_mut().insert(name.clone(), lent);
+            }
+            return Subject { id, name };
+        };
         self.told_by_a_part.borrow_mut().insert(name.clone(), likely.to_owned());
         Subject::known(likely, &name)
     }

@@ -30,6 +30,8 @@ pub struct Config {
     pub hosts: Vec<String>,
     /// Folders from which clients may have the server read.
     pub read_roots: Vec<PathBuf>,
+    /// Folders in which data sets are made: they are among the jobs of administrators.
+    pub data_sets: Vec<PathBuf>,
     /// Whether clients may have the server fetch documents from public addresses.
     pub fetch_documents: bool,
     /// Bounds of what one client and all clients may use.

@@ -1,8 +1,9 @@
 /** What rooms, things, people and rules are called in the reader's language: in the words of the page, else in those of the domain. */
 import { domains } from "./api";
 import { type Kind, kindsOf } from "./kinds";
-import { t, texts, words } from "./texts.svelte";
-import { type Subject, type Wording, wordingOf } from "./wording";
+import { inWords, type Patterns, type Speaker } from "./sentences";
+import { figure, t, texts, words } from "./texts.svelte";
+import { patternsOf, type Subject, type Wording, wordingOf } from "./wording";
 
 /** What is called by its kind and a number where nobody gave it a name. */
 const NUMBERED = /^(.*?)[ _](\d+)$/;
@@ -20,7 +21,10 @@ class Names {
   #kinds = $state.raw(new Map<string, string>());
   /** English names of kinds of rooms, which rooms are called by. */
   #labels = $state.raw(new Map<string, string>());
+  /** Kinds of rooms by their English names, in small letters. */
+  #labelled = new Map<string, string>();
   #wording = $state.raw<Wording | undefined>();
+  #patterns = $state.raw<Patterns>([]);
 
   /** Learns what things are called: the kinds of a domain too, and of those kinds of rooms that others lend it. */
   async learn(domainId: string | undefined, roomTypes: string[]) {
@@ -28,16 +32,44 @@ class Names {
     if (language === "en") {
       this.#kinds = this.#labels = new Map();
       this.#wording = undefined;
+      this.#patterns = [];
       return;
     }
     const none = { room: [], object: [] };
-    const [kinds, wording] = await Promise.all([domainId ? kindsOf(domainId) : none, wordingOf(language)]);
+    const [kinds, wording, patterns] = await Promise.all([domainId ? kindsOf(domainId) : none, wordingOf(language), patternsOf(language)]);
     const own = new Set(kinds.room.map(({ id }) => id));
     const rooms = [...(await lent(roomTypes.filter((id) => !own.has(id)))), ...kinds.room];
     if (language !== texts.language) return;
     this.#kinds = new Map([...rooms, ...kinds.object].map(({ id, name }) => [id, name]));
     this.#labels = new Map(rooms.map(({ id, label }) => [id, label]));
+    this.#labelled = new Map(rooms.map(({ id, label }) => [label.toLowerCase(), id]));
     this.#wording = wording;
+    this.#patterns = patterns;
+  }
+
+  /** Returns a sentence of the server in the reader's language; in English where nobody has said how it goes. */
+  sentence(text: string): string {
+    return inWords(text, this.#patterns, this.#speaker) ?? text;
+  }
+
+  #speaker: Speaker = {
+    figure: (value) => figure(value),
+    named: (name) => this.english(name),
+    quoted: (said) => t("said.quoted", { said: this.english(said) }),
+    listed: (all, more) => (more > 0 ? [...all, t("said.more", { n: more })].join(", ") : all.join(", ")),
+  };
+
+  /** Returns what a room or thing with an English name, or with an id, is called; the name itself where that is not known. */
+  english(name: string): string {
+    const [, kind = name, number = ""] = NUMBERED.exec(name) ?? [];
+    const known = this.#kindOf(kind) ?? this.#kindOf(kind.replace(/s$/, ""));
+    return known ? `${known} ${number}`.trim() : name;
+  }
+
+  #kindOf(name: string): string | undefined {
+    const id = name.toLowerCase().replaceAll(" ", "_");
+    const room = this.#labelled.get(name.toLowerCase());
+    return (room && this.of(room)) ?? this.#kinds.get(id) ?? this.#said("rooms", id) ?? this.#said("objects", id) ?? this.#said("robots", id) ?? this.#said("buildings", id);
   }
 
   /** Returns the name of a kind of room or thing; its id in words until it is known. */

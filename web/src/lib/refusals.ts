@@ -47,7 +47,7 @@ export function reasonOf(error: unknown, world?: World): string {
   if (own) return own;
   const places = placesOf(error).map((place) => place.message);
   const said = places.length > 0 ? places : [known.rawMessage || Code[known.code]];
-  const detail = said.map((text) => without(without(text, facts.stage && `${facts.stage}: `), VAIN)).join("\n");
+  const detail = said.map((text) => names.sentence(without(without(text, facts.stage && `${facts.stage}: `), VAIN))).join("\n");
   return reason === NO_SOLUTION ? t("refused.noSolution", { detail }) : detail;
 }
 

@@ -44,6 +44,13 @@ export function figure(value: number, digits = 2): string {
   return value.toLocaleString(texts.language, { maximumFractionDigits: digits });
 }
 
+/** Returns about how long so many seconds are. */
+export function duration(seconds: number): string {
+  if (seconds < 100) return t("duration.s", { n: figure(seconds, 0) });
+  if (seconds < 6000) return t("duration.min", { n: figure(seconds / 60, 0) });
+  return t("duration.h", { n: figure(seconds / 3600, 1) });
+}
+
 /** Returns an id or open word as people read it: `patient_room` becomes `patient room`. */
 export function words(id: string): string {
   return id.replaceAll("_", " ");

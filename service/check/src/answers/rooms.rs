@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use d3dgen_model::brief::{Ask, AskedCount, Fact, RoomsAsk, Subject};
-use d3dgen_model::domain::{Mount, Shape};
+use d3dgen_model::domain::{Mount, Shape, tags};
 use d3dgen_model::floorplan::{Door, DoorKind, PlanRoom};
 use d3dgen_model::offer::Wet;
 use d3dgen_model::report::Fate;
@@ -33,7 +33,8 @@ impl<'a> Asked<'a> {
         if there.is_empty() {
             return out;
         }
-        out = out.and(self.other_kind(asked, there)).and(self.likely_kind(asked, there)).and(self.unknown_rooms(there));
+        out = out.and(self.other_kind(asked, there)).and(self.likely_kind(asked, there));
+        out = out.and(self.unknown_rooms(there)).and(self.blind_locks(there));
         let plans: Vec<&PlanRoom> = there.iter().filter_map(|r| self.world.floorplan.room(&r.id)).collect();
         if let Some(area) = asked.area_m2 {
             let farthest =
@@ -128,6 +129,25 @@ impl<'a> Asked<'a> {
             _ => None,
         });
         things.into_iter().any(|object| self.objects_called(object).iter().any(|p| p.room_id == room.id))
+    }
+
+    /// Returns which locks are only called so: no room is entered through them alone.
+    fn blind_locks(&self, there: &[&GraphRoom]) -> Finding {
+        let tagged =
+            |r: &GraphRoom| self.domain.room_type_or_generic(&r.room_type).tags.iter().any(|t| t == tags::LOCK);
+        let is_way = |id: &str| self.world.scene_graph.room(id).is_some_and(|r| r.circulation);
+        let behind = |r: &GraphRoom, id: &str| r.id != id && !is_way(id) && !self.beyond(id).any(is_way);
+        let leads = |r: &GraphRoom| self.beyond(&r.id).any(|id| behind(r, id));
+        let is_blind = |r: &&GraphRoom| tagged(r) && !leads(r);
+        let blind: Vec<&GraphRoom> = there.iter().copied().filter(|r| is_blind(r)).collect();
+        let reason = || format!("nothing lies behind {}: no room is entered through it alone", names_of(&blind));
+        Finding::when(blind.is_empty(), Vec::new(), reason).or_near()
+    }
+
+    /// Returns the rooms that the doors of one lead to.
+    fn beyond<'s>(&'s self, room_id: &'s str) -> impl Iterator<Item = &'s str> {
+        let doors = self.world.floorplan.doors.iter().filter(move |d| d.room_ids.iter().any(|id| id == room_id));
+        doors.flat_map(|d| d.room_ids.iter().map(String::as_str)).filter(move |id| *id != room_id)
     }
 
     /// Answers for some of the rooms that another fact asks for: so many of them are to be as it says.

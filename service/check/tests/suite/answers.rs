@@ -312,6 +312,28 @@ fn a_room_that_a_part_of_its_name_told_is_a_substitute() {
 }
 
 #[test]
+fn a_lock_with_nothing_behind_it_is_not_what_was_asked_for() {
+    let anteroom = || rooms("anteroom", AskedCount::exactly(1));
+    assert_eq!(answer(&SAMPLES[WARD], anteroom()).fate, Fate::Honored);
+    // the isolation room opens to the corridor instead
+    let mut world = SAMPLES[WARD].world.clone();
+    let corridor = world.scene_graph.rooms.iter().find(|r| r.circulation).expect("a ward has a corridor").id.clone();
+    let is = |id: &String, kind: &str| world.floorplan.room(id).is_some_and(|r| r.room_type == kind);
+    let between = |ids: &[String]| ["anteroom", "isolation_room"].iter().all(|k| ids.iter().any(|id| is(id, k)));
+    let door = world.floorplan.doors.iter().position(|d| between(&d.room_ids)).expect("a door between the two");
+    let lock = world.floorplan.doors[door].room_ids.iter().position(|id| is(id, "anteroom")).expect("one of the two");
+    world.floorplan.doors[door].room_ids[lock] = corridor;
+    let brief = Brief {
+        asks: vec![Ask { id: "ask_1".into(), words: Vec::new(), read_by: Default::default(), fact: anteroom() }],
+        ..Brief::of_prompt("")
+    };
+    world.brief = Some(brief);
+    let found = check(&world, SAMPLES[WARD].domain, &SAMPLES[WARD].retrieval).asks.remove(0);
+    assert_eq!(found.fate, Fate::Substituted, "{found:?}");
+    assert!(found.reason.contains("nothing lies behind"), "{found:?}");
+}
+
+#[test]
 fn each_of_several_rooms_has_what_they_are_asked_for_with() {
     let flat = &SAMPLES[FLAT];
     let is_wardrobe = |object: &str| object.ends_with("wardrobe");

@@ -59,7 +59,7 @@ impl Args {
         output.write("metrics.json", format!("{:#}\n", run.metrics).as_bytes())?;
         output.write("scenario.json", world.scenario.to_json().as_bytes())?;
         if !self.no_film {
-            output.write("crowd.png", &film::film(&world, &run.trajectory)?)?;
+            output.write("crowd.png", &film::film(&world, &run.trajectory, self.seconds)?)?;
         }
         output.commit()?;
         self.tell(&run)

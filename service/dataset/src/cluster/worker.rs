@@ -22,8 +22,10 @@ use crate::tasks::Tasks;
 
 /// How often a worker looks for runs that have begun or ended.
 const LOOK: Duration = Duration::from_secs(3);
-/// How long a block rests that could not be made or stored.
+/// How long a block rests that could not be made or stored, the first time; twice as long each further time.
 const REST: Duration = Duration::from_secs(5);
+/// How long it rests at most.
+const LONGEST_REST: Duration = Duration::from_secs(300);
 /// How often a worker tries to reach the queue when it begins.
 const MOST_ATTEMPTS: u32 = 20;
 /// Runs whose domains a worker keeps in memory.
@@ -195,11 +197,22 @@ impl Worker {
             Err(error) => {
                 self.counters.errors.fetch_add(1, Ordering::Relaxed);
                 say(format!("{run}: {error}"));
-                answer(&message, AckKind::Nak(Some(REST))).await?;
+                self.give_back(run, &message, &error).await?;
                 tokio::time::sleep(Duration::from_secs(1)).await;
             }
         }
         Ok(true)
+    }
+
+    /// Gives a block back that could not be made or stored; the last one that may take it sets it aside with the reason.
+    async fn give_back(&self, run: &str, message: &Message, error: &Error) -> Result<(), Error> {
+        let deliveries = message.info().map_or(1, |info| info.delivered);
+        let ticket = serde_json::from_slice::<Ticket>(&message.payload).ok();
+        if let Some(ticket) = ticket.filter(|_| deliveries >= i64::from(self.queue.settings().deliveries)) {
+            let reason = format!("{deliveries} workers took it, and the last one ended with: {error}");
+            return self.set_aside(run, ticket.block, reason, message).await;
+        }
+        answer(message, AckKind::Nak(Some(rest(deliveries)))).await
     }
 
     async fn deal(&self, run: &str, message: &Message) -> Result<(), Error> {
@@ -213,7 +226,8 @@ impl Worker {
             return answer(message, AckKind::Ack).await;
         }
         if deliveries > i64::from(self.queue.settings().deliveries) {
-            return self.set_aside(run, ticket.block, deliveries, message).await;
+            let reason = format!("{} workers took it and none came back with it", deliveries - 1);
+            return self.set_aside(run, ticket.block, reason, message).await;
         }
         let prepared = self.prepared(run).await?;
         let (bytes, worlds, tasks) = self.make(prepared, ticket.block, message).await?;
@@ -252,8 +266,7 @@ impl Worker {
         }
     }
 
-    async fn set_aside(&self, run: &str, block: u64, deliveries: i64, message: &Message) -> Result<(), Error> {
-        let reason = format!("{} workers took it and none came back with it", deliveries - 1);
+    async fn set_aside(&self, run: &str, block: u64, reason: String, message: &Message) -> Result<(), Error> {
         let poison = serde_json::to_vec(&Poison { block, reason }).expect("it has string keys only");
         self.objects.put_new(&places::poisoned(run, block), poison).await?;
         self.counters.poisoned.fetch_add(1, Ordering::Relaxed);
@@ -317,8 +330,25 @@ impl Worker {
     }
 }
 
+/// Returns how long a block rests after it was taken so often in vain.
+fn rest(deliveries: i64) -> Duration {
+    let doublings = u32::try_from(deliveries - 1).unwrap_or(0).min(16);
+    REST.saturating_mul(1 << doublings).min(LONGEST_REST)
+}
+
 async fn answer(message: &Message, kind: AckKind) -> Result<(), Error> {
     // with the queue's word that it heard: an answer that is lost only costs a second making
     let heard = message.double_ack_with(kind).await;
     heard.map_err(|e| failed("the queue does not hear an answer")(&e))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_block_that_fails_again_rests_longer() {
+        let rests: Vec<u64> = [0, 1, 2, 3, 7, 8, 1000].into_iter().map(|n| rest(n).as_secs()).collect();
+        assert_eq!(rests, [5, 5, 10, 20, 300, 300, 300]);
+    }
 }

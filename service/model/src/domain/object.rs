@@ -40,6 +40,9 @@ pub struct ObjectType {
     /// Free room at both sides that it has wherever the room holds it, m: for the elbows of who washes.
     #[serde(default)]
     pub elbow_room_m: f64,
+    /// Free floor on all four sides, m, without which it is not there: one works around an island.
+    #[serde(default)]
+    pub free_around_m: f64,
     /// True when things can stand on its top.
     #[serde(default)]
     pub surface: bool,

@@ -46,6 +46,10 @@ pub struct RoomType {
     /// How many rooms of one type are entered from it, each from one of its own where it is not said.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub guests: Option<u32>,
+    /// Room types that lie behind it wherever both are there, whether the prompt says so or not, those that need it most first: the
+    /// isolation room behind an airlock, the live room behind a sound lock. They may be of other domains.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub locks: Vec<String>,
     /// True when it holds plumbing: such rooms are put back to back.
     #[serde(default)]
     pub wet: bool,
@@ -215,7 +219,8 @@ impl RoomType {
         let by_type = |inner: &Self, outer: &Self| inner.access == Access::Host && inner.hosts.contains(&outer.id);
         let closet = self.zone == Zone::Night && self.daylight == Daylight::None;
         let own = (self.wet || closet || self.zone == Zone::Outdoor) && !host.wet;
-        by_type(self, host) || by_type(host, self) || host.privacy != Privacy::Private || own
+        let locked = host.locks.contains(&self.id);
+        by_type(self, host) || by_type(host, self) || host.privacy != Privacy::Private || own || locked
     }
 
     pub(super) fn check(&self, path: &str, domain: &Domain, problems: &mut Vec<Problem>) {

@@ -31,6 +31,8 @@ pub const SEATS: &str = "seats";
 pub const COUNTER: &str = "counter";
 /// Where people work at desks.
 pub const DESKS: &str = "desks";
+/// There for nothing but to be passed on the way to the room behind it.
+pub const LOCK: &str = "lock";
 
 /// Tags that are only ever given: `tags = ["eat"]` of a room type.
 ///
@@ -41,8 +43,9 @@ pub const DESKS: &str = "desks";
 /// and performed. `pray`: people pray. `exercise`: people move their bodies. `change`: people change clothes. `rest`: those who
 /// work there have their break. `guard`: from where a building is watched. `goods`: goods come, go and are kept. `make`: things
 /// are made and repaired. `study`: people read and learn by themselves. `play`: children play. `live`: a household spends its
-/// days. `vehicle`: vehicles stand. `research`: things are examined scientifically.
-pub const GIVEN: [&str; 29] = [
+/// days. `vehicle`: vehicles stand. `research`: things are examined scientifically. `lock`: it is there for nothing but to be passed
+/// on the way to the room behind it.
+pub const GIVEN: [&str; 30] = [
     "treatment",
     "operating",
     "imaging",
@@ -72,6 +75,7 @@ pub const GIVEN: [&str; 29] = [
     "live",
     "vehicle",
     "research",
+    LOCK,
 ];
 
 const DERIVED: [&str; 13] =

@@ -1,10 +1,11 @@
 //! Homes as they are asked for: kitchens open to where one eats, seats for all who sleep there, what the prompt names by
 //! name, gates for cars.
 
+use d3dgen_model::domain::Mount;
 use d3dgen_model::floorplan::DoorKind;
 use d3dgen_model::world::World;
 
-use crate::common::{count, most, worlds};
+use crate::common::{body, count, gap, in_room, most, worlds};
 
 #[test]
 fn open_kitchens_have_an_opening() {
@@ -60,6 +61,31 @@ fn named_things_stand_where_they_are_asked_for() {
         held.extend(worlds(prompt, 3).iter().map(|w| count(w, room_type, object) == 1));
     }
     most("named things", 0.75, &held);
+}
+
+#[test]
+fn one_works_on_all_sides_of_an_island() {
+    let mut stand = 0;
+    for prompt in [
+        "villa with a kitchen of 24 m2 with island, dining room for 8, 4 bedrooms",
+        "appartement de 70 m2 avec îlot central dans la cuisine, 2 chambres",
+        "Haus mit 130 m2, Küche mit Kochinsel, 3 Schlafzimmer, Bad, Gäste-WC",
+    ] {
+        for world in worlds(prompt, 3) {
+            for island in world.placements.placements.iter().filter(|p| p.object == "kitchen_island") {
+                stand += 1;
+                let others = in_room(&world, &island.room_id).filter(|p| p.placement_id != island.placement_id);
+                let counters = others.filter(|p| p.mount == Mount::Floor && p.size_m[2] > 0.8);
+                let near = counters.map(|p| gap(&body(p), &body(island))).fold(f64::MAX, f64::min);
+                assert!(near > 0.88, "{prompt}: {near:.2} m beside the island");
+                let walls = world.floorplan.room(&island.room_id).unwrap().net_polygon.bounds();
+                let (at, sides) = (body(island), [walls.x0, walls.y0, walls.x1, walls.y1]);
+                let free = [at.x0 - sides[0], at.y0 - sides[1], sides[2] - at.x1, sides[3] - at.y1];
+                assert!(free.iter().all(|f| *f > 0.88), "{prompt}: {free:.2?} m to the walls");
+            }
+        }
+    }
+    assert!(stand >= 3, "islands: {stand}");
 }
 
 #[test]

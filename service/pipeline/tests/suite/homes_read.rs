@@ -187,3 +187,15 @@ fn floor_to_spare_goes_to_rooms_to_live_in() {
     }
     most("rooms to live in", 1.0, &held);
 }
+
+#[test]
+fn a_kitchen_kept_apart_from_the_dining_room_is_not_joined_to_it_for_serving() {
+    for prompt in
+        ["苏州住宅:四间卧室,客厅,餐厅,厨房用移门隔开", "house with four bedrooms, a dining room away from the kitchen"]
+    {
+        for world in worlds(prompt, 2) {
+            let all = entered_from(&world, "dining_room").all(|kind| kind != "kitchen");
+            assert!(all && rooms(&world, "dining_room") == 1, "{prompt}");
+        }
+    }
+}

@@ -12,7 +12,7 @@ use crate::common::{body, count, in_room, most, named, rooms, worlds};
 const SEEDS: u64 = 2;
 
 /// Prompts with what they count: the rooms, the objects in them, and how many there are in all.
-const COUNTED: [(&str, &str, &str, usize); 11] = [
+const COUNTED: [(&str, &str, &str, usize); 14] = [
     ("gym with a spinning room for 20 bikes", "spinning_studio", "spin_bike", 20),
     ("parking garage for 60 cars", "parking_hall", "parked_car", 60),
     ("dairy barn for 80 cows", "barn_hall", "cow_stall", 80),
@@ -24,6 +24,19 @@ const COUNTED: [(&str, &str, &str, usize); 11] = [
     ("hostel with four eight-bed dorms with bunk beds", "dorm_room", "bunk_bed", 16),
     ("post office with five counters and a sorting room", "post_hall", "teller_counter", 5),
     ("airport terminal with six check-in desks", "check_in_hall", "check_in_desk", 6),
+    (
+        "dental laboratory with a milling room with 3 milling machines and an office",
+        "dental_milling_room",
+        "dental_mill",
+        3,
+    ),
+    ("veterinary clinic with an inpatient room with 9 cages and a reception", "kennel_room", "kennel_cage", 9),
+    (
+        "Tierarztpraxis mit Stationsraum mit 6 Käfigen, zwei Behandlungsräumen und Empfang",
+        "kennel_room",
+        "kennel_cage",
+        6,
+    ),
 ];
 
 /// Prompts with rooms that are told by what is in them.
@@ -36,7 +49,7 @@ const CALLED: [(&str, &str, usize); 5] = [
 ];
 
 /// Prompts of kinds with a room and an object by which one knows them without its label.
-const KNOWN_BY: [(&str, &str, &str); 46] = [
+const KNOWN_BY: [(&str, &str, &str); 50] = [
     ("prison with 12 cells", "guard_post", "control_console"),
     ("Gefängnis mit 8 Zellen", "prison_cell", "combination_wc"),
     ("indoor swimming pool", "pool_hall", "lifeguard_chair"),
@@ -73,6 +86,10 @@ const KNOWN_BY: [(&str, &str, &str); 46] = [
     ("паромный терминал с залом ожидания", "boarding_gate", "ticket_gate"),
     ("stadsarchief met een leeszaal", "archive_store", "mobile_shelving"),
     ("sąd z dwiema salami rozpraw", "courtroom", "judges_bench"),
+    ("Dentallabor mit Gipsraum, Fräsraum und Büro", "dental_plaster_room", "worktop_sink"),
+    ("dental laboratory with a milling room and a ceramics room", "dental_milling_room", "dental_mill"),
+    ("recording studio with an editing suite and two vocal booths", "vocal_booth", "stool"),
+    ("녹음 스튜디오, 라이브룸 1개, 편집실 2개, 휴게실", "editing_suite", "control_console"),
     ("radio station with two studios and a control room", "studio_control_room", "control_console"),
     ("музей с двумя выставочными залами и кассой", "ticket_desk", "shop_counter"),
     ("Bäckerei mit Backstube und Verkaufstheke", "bakery_shop", "shop_counter"),
@@ -322,4 +339,74 @@ fn screens_and_stages_are_away_from_where_one_comes_in() {
         }
     }
     most("screens away from the doors", 0.8, &held);
+}
+
+/// Prompts with the lock they name, and what lies behind it, whether they say so or not.
+const LOCKED: [(&str, &str, &str); 7] = [
+    (
+        "veterinary clinic with an isolation room behind an airlock, two exam rooms and a reception",
+        "lab_airlock",
+        "isolation_room",
+    ),
+    ("Labor mit Schleuse, zwei Laborräumen, Umkleide und Pausenraum", "lab_airlock", "laboratory"),
+    ("recording studio with a live room, a control room, a sound lock and a lounge", "sound_lock", "live_room"),
+    ("estudio de grabación con sala de grabación, esclusa acústica y sala de montaje", "sound_lock", "live_room"),
+    ("factory with a clean room, an airlock, an office and a locker room", "lab_airlock", "clean_room"),
+    ("animal shelter with a quarantine and an airlock", "lab_airlock", "animal_quarantine"),
+    (
+        "veterinary clinic with a surgery, a preparation room, an exam room and a reception",
+        "theatre_preparation_room",
+        "vet_surgery",
+    ),
+];
+
+#[test]
+fn what_a_lock_is_there_for_is_entered_through_it_alone() {
+    for (prompt, lock, behind) in LOCKED {
+        for world in worlds(prompt, SEEDS) {
+            let id = |kind: &str| {
+                let rooms = world.floorplan.rooms.iter().filter(|r| r.room_type == kind);
+                rooms.map(|r| r.room_id.clone()).next().unwrap_or_else(|| panic!("{prompt}: no {kind}"))
+            };
+            let (lock, inner) = (id(lock), id(behind));
+            let doors = world.floorplan.doors.iter().filter(|d| d.room_ids.contains(&inner));
+            let from: Vec<&String> = doors.flat_map(|d| &d.room_ids).filter(|id| **id != inner).collect();
+            assert_eq!(from, [&lock], "{prompt}: {behind}");
+        }
+    }
+}
+
+#[test]
+fn a_lock_that_leads_nowhere_is_said() {
+    let prompt = "insurance office with an airlock, three offices, a meeting room and a toilet";
+    for world in worlds(prompt, SEEDS) {
+        assert_eq!(rooms(&world, "lab_airlock").count(), 1, "{prompt}");
+        let mut said = world.scene_graph.conflicts.iter();
+        assert!(said.any(|note| note.code == "lock_leads_nowhere"), "{:?}", world.scene_graph.conflicts);
+    }
+}
+
+/// Prompts with more floor than their rooms need, the room that people are counted for, and how many there are.
+const ROOMY: [(&str, &str, u32); 4] = [
+    (
+        "ferry terminal, 900 m2, with three ticket counters, a waiting hall with 80 seats, left luggage and toilets",
+        "waiting_area",
+        80,
+    ),
+    ("Bibliothek 1200 m2 mit Lesesaal für 20 Personen, zwei Büros und Magazin", "reading_room", 20),
+    ("museo de 800 m2 con una cafetería para 16 personas y dos salas de exposición", "cafe", 16),
+    ("laboratory of 700 m2 with a waiting area for 15 people, two laboratories and an office", "waiting_area", 15),
+];
+/// Most floor for each who waits, reads or eats there in a building with floor to spare, m2.
+const MOST_EACH_M2: f64 = 8.0;
+
+#[test]
+fn floor_to_spare_blows_no_room_up() {
+    for (prompt, kind, people) in ROOMY {
+        for world in worlds(prompt, SEEDS) {
+            let most = rooms(&world, kind).map(|r| r.net_area_m2).fold(0.0, f64::max);
+            assert!(most > 0.0, "{prompt}: no {kind}");
+            assert!(most <= MOST_EACH_M2 * f64::from(people), "{prompt}: {kind} of {most:.0} m2");
+        }
+    }
 }

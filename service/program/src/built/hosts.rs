@@ -1,7 +1,7 @@
 //! Rooms that are entered through others: which room is the host of each en suite, closet and terrace.
 
 use d3dgen_knowledge::jurisdiction::rules_here;
-use d3dgen_model::domain::{Access, AdjacencyRelation, Domain, RoomType, Zone};
+use d3dgen_model::domain::{Access, AdjacencyRelation, Domain, RoomType, Zone, tags};
 use d3dgen_model::offer;
 use d3dgen_model::offer::sleeps;
 use d3dgen_model::scene_graph::{Note, SceneGraph};
@@ -16,6 +16,8 @@ use crate::wished::wishes::{Pair, PerHost};
 
 /// Code of the note that one of several bathrooms belongs to the main bedroom.
 const EN_SUITE: &str = "en_suite";
+/// Rooms behind one lock at most: more have no wall in common with it.
+const MOST_BEHIND: usize = 2;
 
 /// Returns the type of the room that comes with every host: the one that is named, or where that is no room entered through
 /// another the one for the same use that is: "every room has a bathroom" of a hospital means its en suites.
@@ -95,12 +97,7 @@ pub(super) fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
         !of(&p.a) && rules.any(|r| r.relation == AdjacencyRelation::Must && r.a == p.a && r.b == p.b)
     };
     let pairs: Vec<Pair> = reading.wishes.pairs.iter().filter(|p| p.belongs && !beside(p)).cloned().collect();
-    // the only storey that the prompt puts rooms of a type on
-    let storey = |id: &str| {
-        let mut on = reading.storeys.wanted.iter().filter(|w| w.room_type == id).map(|w| w.at);
-        on.next().filter(|_| on.next().is_none())
-    };
-    let storeys: Vec<Option<Where>> = rooms.iter().map(|r| storey(&r.room_type)).collect();
+    let storeys: Vec<Option<Where>> = rooms.iter().map(|r| only_storey(reading, &r.room_type)).collect();
     for i in 0..rooms.len() {
         let room = &rooms[i];
         // "on the second floor a terrace": not that of the living room below
@@ -157,6 +154,63 @@ pub(super) fn hang_on_hosts(reading: &mut Reading, rooms: &mut [Planned]) {
     }
 }
 
+/// Puts the rooms that a lock is there for behind it, also where the prompt does not say which: those that it names with the lock, else
+/// those of the first of the types that the lock's own lists of which there are any. A lock with nothing to go on to is said.
+pub(super) fn hang_on_locks(reading: &mut Reading, rooms: &mut [Planned]) {
+    let locks: Vec<usize> = (0..rooms.len()).filter(|&i| !rooms[i].kind.locks.is_empty()).collect();
+    // locks that are nothing else come first: one dresses before the airlock of a clean room
+    let (only, also): (Vec<usize>, Vec<usize>) = locks.into_iter().partition(|&i| is_only_lock(rooms[i].kind));
+    for round in 0..MOST_BEHIND {
+        for &lock in only.iter().chain(&also) {
+            let behind = rooms.iter().filter(|r| r.host == Some(lock)).count();
+            // each lock has its first room before one of them has its second
+            if behind == round
+                && let Some(room) = next_behind(reading, rooms, lock)
+            {
+                rooms[room].host = Some(lock);
+            }
+        }
+    }
+    for &lock in only.iter().filter(|&&i| rooms.iter().all(|r| r.host != Some(i))) {
+        let name = rooms[lock].called.clone().unwrap_or_else(|| rooms[lock].kind.label.clone());
+        let message = format!("{name} leads nowhere: there is no room here that lies behind such a lock");
+        reading.conflicts.push(Note::new("lock_leads_nowhere", message));
+    }
+}
+
+/// Returns the only storey that the prompt puts rooms of a type on.
+fn only_storey(reading: &Reading, room_type: &str) -> Option<Where> {
+    let mut on = reading.storeys.wanted.iter().filter(|w| w.room_type == room_type).map(|w| w.at);
+    on.next().filter(|_| on.next().is_none())
+}
+
+/// Returns true for rooms that are there for nothing but to be passed.
+fn is_only_lock(kind: &RoomType) -> bool {
+    kind.tags.iter().any(|tag| tag == tags::LOCK)
+}
+
+/// Returns the next room to be put behind a lock: of the type of those that are there already, if any are.
+fn next_behind(reading: &Reading, rooms: &[Planned], lock: usize) -> Option<usize> {
+    let kind = rooms[lock].kind;
+    let first = rooms.iter().find(|r| r.host == Some(lock)).map(|r| &r.room_type);
+    let told = |r: &Planned| {
+        let named = |a: &str, b: &str| a == rooms[lock].room_type && b == r.room_type;
+        reading.wishes.pairs.iter().any(|p| named(&p.a, &p.b) || named(&p.b, &p.a))
+    };
+    let rank = |r: &Planned| kind.locks.iter().position(|id| *id == r.room_type);
+    let storey = only_storey(reading, &rooms[lock].room_type);
+    let elsewhere = |r: &Planned| only_storey(reading, &r.room_type).is_some_and(|at| storey.is_some_and(|s| s != at));
+    let free = |r: &Planned| {
+        let alike = first.is_none_or(|id| *id == r.room_type);
+        r.host.is_none() && r.kind.zone != Zone::Circulation && alike && rank(r).is_some() && !elsewhere(r)
+    };
+    let candidates = (0..rooms.len()).filter(|&i| i != lock && free(&rooms[i]));
+    candidates.min_by_key(|&i| {
+        let room = &rooms[i];
+        (!told(room), room.unit != rooms[lock].unit, rank(room), i)
+    })
+}
+
 /// Returns true for a pair of rooms of which the first cannot be entered through the second, so that it is beside it and not behind it.
 pub(super) fn is_beside(reading: &Reading, pair: &Pair) -> bool {
     let of = |id: &str| reading.domain.room_type_or_generic(id);
@@ -169,14 +223,15 @@ fn behind_lock(domain: &Domain, rooms: &[Planned], lock: usize, pair: &Pair) -> 
     let kind = rooms[lock].kind;
     let larger = |t: &RoomType| t.area_m2.target > kind.area_m2.target && !t.wet;
     let before = |t: &RoomType| t.access == Access::Host && t.hosts.contains(&kind.id) && larger(t);
-    let locks = matches!(kind.zone, Zone::Service | Zone::Circulation) && kind.access != Access::Host;
+    let serves = matches!(kind.zone, Zone::Service | Zone::Circulation) && kind.access != Access::Host;
     let free = |r: &Planned| {
         r.room_type == pair.b
             && r.host.is_none()
             && r.kind.access != Access::Host
             && (larger(r.kind) || r.name.is_some())
     };
-    if !locks || !domain.room_types.iter().any(before) {
+    let locks = !kind.locks.is_empty() || serves && domain.room_types.iter().any(before);
+    if !locks {
         return None;
     }
     rooms.iter().position(free)

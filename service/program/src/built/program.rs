@@ -63,6 +63,7 @@ pub(crate) fn finish<'a>(reading: &mut Reading<'a>, mut rooms: Vec<Planned<'a>>)
     workers::seat_guests(reading, &mut rooms);
     occupants::seat_waiting(reading, &mut rooms);
     hosts::hang_on_hosts(reading, &mut rooms);
+    hosts::hang_on_locks(reading, &mut rooms);
     hosts::share_last_bathroom(reading, &mut rooms);
     hosts::give_main_bedroom_a_bath(reading, &mut rooms);
     state_additions(reading, &rooms);

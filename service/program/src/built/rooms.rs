@@ -25,6 +25,10 @@ pub(crate) const MOST_WISHES: usize = 15;
 const CROWDED: f64 = 0.6;
 /// Most area of a room that serves so many people, as a factor on what they need.
 const ROOMY: f64 = 1.5;
+/// Most area of a room with floor to spare, as factors: on what the people need that it is told to be for, and on its usual one. What
+/// the building is there for (the floor of a shop, a hall of racks) has no such bound.
+const HALF_EMPTY: f64 = 2.0;
+const VAST: f64 = 3.0;
 /// Largest area of a room over its usual one from which on it takes any number of people.
 const OPEN_ENDED: f64 = 8.0;
 /// What rooms need beyond their least area before a home is too small for its table, as a factor.
@@ -253,12 +257,13 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
     };
     let works = is_office(reading.program);
     let lives = is_dwelling(reading.program);
+    let main: Vec<bool> = planned.iter().map(|room| lives || is_main(reading, planned, room)).collect();
     // people eat together before bedrooms are as large as usual
     let seated = |room: &Planned| room.table_area_m2.filter(|_| room.area_m2.is_none());
     let least: f64 = planned.iter().map(|r| r.area_m2.or(seated(r)).unwrap_or(0.0).max(r.kind.area_m2.min)).sum();
     let keeps_table = TIGHT * least <= budget;
     let at = |scale: f64, roomy: usize| -> Vec<f64> {
-        let sized = planned.iter().zip(&areas).map(|(room, area)| {
+        let sized = planned.iter().zip(&areas).zip(&main).map(|((room, area), is_main)| {
             let mut range = room.kind.area_m2;
             if reading.accessible {
                 // rooms have the floor for a wheelchair whatever is left for the others
@@ -277,8 +282,10 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
                     let at_table = room.visited && room.kind.zone != Zone::Public;
                     let most = if serves || kept || at_table {
                         range.max.min(ROOMY * people.max(range.min))
-                    } else {
+                    } else if *is_main && room.occupants.is_none() {
                         range.max
+                    } else {
+                        range.max.min(HALF_EMPTY * people.max(range.min))
                     };
                     // who is told to have a desk there has it
                     let desks = works && room.occupants.is_some_and(|n| n <= MOST_IN_TEAM) && !room.visited;
@@ -287,7 +294,11 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
                 }
                 _ => {
                     // in a large home one lives in larger rooms; what serves them does not grow with it
-                    let most = if lives { most_of(room.kind.zone) } else { MOST_SCALE };
+                    let most = match lives {
+                        true => most_of(room.kind.zone),
+                        false if *is_main => MOST_SCALE,
+                        false => VAST,
+                    };
                     let most = if kept { most.min(ROOMY) } else { most };
                     (area * scale.min(most)).clamp(range.min, range.max)
                 }
@@ -328,6 +339,19 @@ fn target_areas(reading: &mut Reading, planned: &[Planned]) -> Vec<f64> {
         reading.conflicts.push(Note::new("area_not_reachable", message));
     }
     scaled.into_iter().map(tenth).collect()
+}
+
+/// Returns true for the room that a building is there for: a hall that others open to, the first room of its program, or where none of
+/// these is there the largest.
+fn is_main(reading: &Reading, planned: &[Planned], room: &Planned) -> bool {
+    let hubs = &reading.domain.circulation.hub_room_types;
+    let first = reading.program.rooms.first().map(|entry| &entry.room_type);
+    let named = |id: &String| hubs.contains(id) || first == Some(id);
+    if planned.iter().any(|r| named(&r.room_type)) {
+        return named(&room.room_type);
+    }
+    let most = planned.iter().map(|r| r.kind.area_m2.max).fold(0.0, f64::max);
+    room.kind.area_m2.max >= most
 }
 
 /// Lets the living room of a home be larger than its bedrooms: it gets what they have more of it, as far as both may change.

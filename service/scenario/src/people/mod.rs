@@ -52,7 +52,7 @@ pub(crate) fn fill(scenario: &mut Scenario, graph: &SceneGraph, plan: &Floorplan
     let scene = Scene { building, access: &access, graph, domain, hour };
     let counts = counts(&scene);
     let mut writer = Writer::new(building, &scenario.robots, &scenario.pois);
-    let mut agents: Vec<(usize, Agent)> = Vec::new();
+    let mut agents: Vec<((usize, usize), Agent)> = Vec::new();
     // those that others go to are known before these
     let visited = |role: &Role| {
         domain.roles.iter().flat_map(|r| &r.rounds).flat_map(|r| &r.steps).any(|s| s.to_role.as_ref() == Some(&role.id))
@@ -66,11 +66,11 @@ pub(crate) fn fill(scenario: &mut Scenario, graph: &SceneGraph, plan: &Floorplan
         let there: Vec<&Round> = rounds.iter().copied().filter(|r| r.arrivals_per_h == 0.0).collect();
         let count = if rounds.is_empty() || !there.is_empty() { counts[i] } else { 0 };
         let count = (count as usize).min(MOST_PEOPLE.saturating_sub(agents.len()));
-        for number in 0..count {
+        for number in evenly(count) {
             let round = if there.is_empty() { None } else { Some(there[number % there.len()]) };
             let known: Vec<&Agent> = agents.iter().map(|(_, a)| a).collect();
             let made = person(&scene, &mut writer, (role, round), (number, count), &known);
-            agents.extend(made.map(|agent| (i, agent)));
+            agents.extend(made.map(|agent| ((i, number), agent)));
         }
         for (k, round) in rounds.iter().filter(|r| r.arrivals_per_h > 0.0).enumerate() {
             let known: Vec<&Agent> = agents.iter().map(|(_, a)| a).collect();
@@ -79,11 +79,27 @@ pub(crate) fn fill(scenario: &mut Scenario, graph: &SceneGraph, plan: &Floorplan
     }
     let stations: Vec<&Station> = writer.stations().collect();
     serve(flows.iter_mut().map(|(_, flow)| flow).collect(), &stations);
-    agents.sort_by_key(|(i, _)| *i);
+    agents.sort_by_key(|(place, _)| *place);
     flows.sort_by_key(|(i, _)| *i);
     scenario.agents = agents.into_iter().map(|(_, a)| a).collect();
     scenario.flows = flows.into_iter().map(|(_, f)| f).collect();
     scenario.stations = used(&writer, &scenario.agents, &scenario.flows);
+}
+
+/// Returns the numbers of people so that the first few are from all over: those who begin in one room follow each other, and what
+/// has few places, such as the floor of a hall, goes to some of each room.
+fn evenly(count: usize) -> impl Iterator<Item = usize> {
+    // steps of about the golden section leave no gap much larger than another (three-gap theorem)
+    let near = (count as f64 * 0.618) as usize;
+    let stride = (near.max(1)..).find(|stride| coprime(*stride, count)).unwrap_or(1);
+    (0..count).map(move |k| k * stride % count)
+}
+
+fn coprime(mut a: usize, mut b: usize) -> bool {
+    while b > 0 {
+        (a, b) = (b, a % b);
+    }
+    a == 1
 }
 
 /// Has no more people come than the counters that they line up at serve: with more, lines grow without end.
@@ -310,6 +326,17 @@ mod tests {
             group: [1, 3],
             itineraries: vec![Itinerary { steps: vec![queue(room, seconds)] }, Itinerary { steps: Vec::new() }],
         }
+    }
+
+    #[test]
+    fn the_first_few_of_many_are_from_all_over() {
+        for count in [0, 1, 2, 3, 8, 112] {
+            let mut all: Vec<usize> = evenly(count).collect();
+            all.sort_unstable();
+            assert_eq!(all, (0..count).collect::<Vec<_>>(), "each once");
+        }
+        let classes: BTreeSet<usize> = evenly(112).take(12).map(|number| number * 6 / 112).collect();
+        assert_eq!(classes.len(), 6, "some of each of six classes: {classes:?}");
     }
 
     #[test]

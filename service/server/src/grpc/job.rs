@@ -1,5 +1,7 @@
 //! `JobService`.
 
+mod data_set;
+
 use std::time::Duration;
 
 use d3dgen_proto::v1::job_service_server::JobService;
@@ -58,12 +60,23 @@ impl JobService for Api {
                 && (asked.states.is_empty() || asked.states.contains(&(state(job.state) as i32)))
                 && asked.kind.as_ref().is_none_or(|kind| kind == job.spec.kind())
         };
-        let (found, next_page_token) = page.cut(self.core.jobs.list(fits));
-        let jobs = found.iter().map(|job| JobMessage { result: None, ..message(job) }).collect();
-        Ok(Response::new(ListJobsResponse { jobs, next_page_token }))
+        let own = self.core.jobs.list(fits).into_iter().map(|job| JobMessage { result: None, ..message(&job) });
+        let own: Vec<JobMessage> = own.collect();
+        let api = self.clone();
+        self.lookup(move |_| {
+            let wanted = asked.kind.as_ref().is_none_or(|kind| kind == data_set::KIND);
+            let mut sets = if wanted { api.data_sets(&caller) } else { Vec::new() };
+            sets.retain(|set| asked.states.is_empty() || asked.states.contains(&set.state));
+            let (jobs, next_page_token) = page.cut(sets.into_iter().chain(own));
+            Ok(ListJobsResponse { jobs, next_page_token })
+        })
+        .await
     }
 
     async fn get_job(&self, request: Request<GetJobRequest>) -> Answer<GetJobResponse> {
+        if let Some(found) = self.data_set(&request.get_ref().job_id, &caller(&request)) {
+            return self.lookup(move |_| Ok(GetJobResponse { job: Some(data_set::message(&found)?) })).await;
+        }
         let job = self.job_of(&request.get_ref().job_id, &caller(&request))?;
         Ok(Response::new(GetJobResponse { job: Some(message(&job)) }))
     }
@@ -73,10 +86,14 @@ impl JobService for Api {
     async fn watch_job(&self, request: Request<WatchJobRequest>) -> Answer<Self::WatchJobStream> {
         let caller = caller(&request);
         let asked = request.into_inner();
-        self.job_of(&asked.job_id, &caller)?;
-        let mut changes = self.core.jobs.changes();
         let (send, receive) = mpsc::channel(4);
         let api = self.clone();
+        if let Some(found) = self.data_set(&asked.job_id, &caller) {
+            tokio::spawn(async move { api.watch_data_set(found, asked.include_logs, send).await });
+            return Ok(Response::new(ReceiverStream::new(receive)));
+        }
+        self.job_of(&asked.job_id, &caller)?;
+        let mut changes = self.core.jobs.changes();
         tokio::spawn(async move {
             let mut seen = 0;
             loop {
@@ -109,12 +126,21 @@ impl JobService for Api {
     }
 
     async fn cancel_job(&self, request: Request<CancelJobRequest>) -> Answer<CancelJobResponse> {
+        if let Some(found) = self.data_set(&request.get_ref().job_id, &caller(&request)) {
+            let stop = move || found.stop().and_then(|()| data_set::message(&found));
+            return self.lookup(move |_| Ok(CancelJobResponse { job: Some(stop()?) })).await;
+        }
         let id = self.job_of(&request.get_ref().job_id, &caller(&request))?.id;
         let core = self.core.clone();
         self.lookup(move |_| Ok(CancelJobResponse { job: Some(message(&core.jobs.cancel(&id)?)) })).await
     }
 
     async fn resume_job(&self, request: Request<ResumeJobRequest>) -> Answer<ResumeJobResponse> {
+        if self.data_set(&request.get_ref().job_id, &caller(&request)).is_some() {
+            let how =
+                "this server does not make the data set: run the command that made it again, it goes on from there";
+            return Err(Status::failed_precondition(how));
+        }
         let id = self.job_of(&request.get_ref().job_id, &caller(&request))?.id;
         let core = self.core.clone();
         self.lookup(move |_| Ok(ResumeJobResponse { job: Some(message(&core.jobs.resume(&id)?)) })).await
@@ -125,6 +151,12 @@ impl JobService for Api {
         let mut asked = request.into_inner();
         let (size, token) = (std::mem::take(&mut asked.page_size), std::mem::take(&mut asked.page_token));
         let page = Page::new(size, &token, &asked)?;
+        if let Some(found) = self.data_set(&asked.job_id, &caller) {
+            let look = move || data_set::logs(&found, page.wanted()).map(|all| page.cut(all));
+            return self
+                .lookup(move |_| look().map(|(logs, next_page_token)| ListJobLogsResponse { logs, next_page_token }))
+                .await;
+        }
         let id = self.job_of(&asked.job_id, &caller)?.id;
         let api = self.clone();
         self.lookup(move |_| {

@@ -4,6 +4,7 @@
 mod access;
 mod assets;
 mod command;
+mod data_sets;
 #[cfg(unix)]
 mod deploy;
 mod edge;

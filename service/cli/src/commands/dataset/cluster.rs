@@ -1,14 +1,13 @@
 //! The flags of runs on many machines, and the leader of one.
 
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use d3dgen_dataset::Error as DatasetError;
 use d3dgen_dataset::cluster::{Leader, Objects, Queue, QueueSettings, Standing};
 use d3dgen_dataset::part::{Done, Part};
 
-use super::{Talk, go_on};
+use super::Runs;
 use crate::error::Error;
 use crate::interrupt;
 
@@ -89,26 +88,12 @@ impl Asked<'_> {
     pub fn lead(&self, part: &Part, guard: &(dyn Fn(u64) -> Result<(), DatasetError> + Sync)) -> Result<(), Error> {
         interrupt::listen();
         let runtime = runtime()?;
-        let before = part.done();
-        let all: u64 = part.own_blocks().map(|b| part.tasks_of(b).count() as u64).sum();
-        let count = |done: &Done| done.worlds + done.failed;
-        let written = AtomicU64::new(before.iter().map(|d| d.bytes).sum());
-        let home = AtomicU64::new(before.iter().map(count).sum());
-        let talk = Talk::of(all);
-        talk.moved(home.load(Ordering::Relaxed), String::new);
-        let begun = (Instant::now(), home.load(Ordering::Relaxed));
+        let runs = Runs::of(part);
         let news = |done: Option<&Done>, standing: &Standing| {
-            go_on()?;
-            let tasks = done.map_or(0, count);
-            let home = home.fetch_add(tasks, Ordering::Relaxed) + tasks;
-            let bytes = done.map_or(0, |d| d.bytes);
-            guard(written.fetch_add(bytes, Ordering::Relaxed) + bytes)?;
-            let rate = (home - begun.1) as f64 / begun.0.elapsed().as_secs_f64().max(1e-3);
+            runs.go_on()?;
             let Standing { waiting, in_hand, again, .. } = standing;
-            let queue = format!("{rate:.1} a second; {waiting} blocks wait, {in_hand} in hand, {again} put in again");
-            talk.progress.doing(&queue);
-            talk.moved(tasks, || format!("{home} of {all}: {queue}"));
-            Ok(())
+            runs.moved(done, &format!("; {waiting} blocks wait, {in_hand} in hand, {again} put in again"))?;
+            guard(runs.bytes())
         };
         let led = runtime.block_on(async {
             let queue = self.args.queue.connect(self.nats).await?;
@@ -116,7 +101,7 @@ impl Asked<'_> {
             let leader = Leader { part, queue, objects, priority: self.args.priority };
             leader.lead(interrupt::flag(), &news).await
         });
-        talk.progress.finish();
+        runs.talk.progress.finish();
         Ok(led?)
     }
 }

@@ -1,7 +1,6 @@
 //! `d3dgen dataset make`: the worlds of a spec, all of them or one shard, here on every core.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use d3dgen_dataset::assemble::is_finished;
@@ -10,9 +9,10 @@ use d3dgen_dataset::part::{Done, Part, Shard};
 use d3dgen_dataset::shelf::Shelf;
 use d3dgen_dataset::snapshot::Snapshot;
 use d3dgen_dataset::spec::Spec;
+use d3dgen_dataset::standing::WORK;
 use d3dgen_dataset::tasks::Tasks;
 
-use super::{Talk, WORK, check_new, clear_work, disk, finish, go_on, tell};
+use super::{Runs, Talk, check_new, clear_work, disk, finish, tell};
 use crate::commands::assets::Kept;
 use crate::error::Error;
 use crate::input::text;
@@ -26,6 +26,24 @@ const SAMPLE: u64 = 16;
 const BLOCKS_OF_A_SHARD: u64 = 32;
 /// Tasks of a block where there are many.
 pub const MOST_OF_A_BLOCK: u64 = 50;
+
+/// Seconds that a block takes one of many workers, about.
+#[cfg(feature = "cluster")]
+const SECONDS_OF_A_BLOCK: f64 = 25.0;
+/// Blocks that workers have at least among them, where there are so many tasks.
+#[cfg(feature = "cluster")]
+const LEAST_BLOCKS: u64 = 16;
+/// Tasks of their blocks at most.
+#[cfg(feature = "cluster")]
+const MOST_OF_A_LONG_BLOCK: u64 = 2_000;
+
+/// What a sample of worlds took.
+struct Sample {
+    count: u64,
+    bytes: u64,
+    failed: u64,
+    time: Duration,
+}
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -58,7 +76,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     /// Worlds in a row that are kept at once: what a run that is stopped loses at most for each thread; the same for all
-    /// shards of a data set [default: 50, fewer where there would be too few blocks]
+    /// shards of a data set [default: 50, fewer where there would be too few blocks; for workers as many as take about 25 s]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000))]
     pub block: Option<u64>,
     #[command(flatten)]
@@ -86,7 +104,7 @@ impl Args {
                 work
             }
         };
-        let part = self.run.part(&work, (&spec, &spec_text), self.shard.unwrap_or(Shard::WHOLE))?;
+        let part = self.part(&work, (&spec, &spec_text))?;
         self.fill(&part)?;
         if self.shard.is_some() {
             let done = part.done();
@@ -107,6 +125,16 @@ impl Args {
 }
 
 impl Args {
+    /// Begins the part, or goes on with it. For workers its blocks are of a length that is measured, where none is said.
+    fn part(&self, work: &Path, texts: (&Spec, &str)) -> Result<Part, Error> {
+        let shard = self.shard.unwrap_or(Shard::WHOLE);
+        #[cfg(feature = "cluster")]
+        if self.run.block.is_none() && !Part::is_at(work) && self.cluster.asked()?.is_some() {
+            return self.run.part_of_long_blocks(work, texts, shard);
+        }
+        self.run.part(work, texts, shard)
+    }
+
     /// Has what is missing of a part made: by workers where a queue is named, else here.
     fn fill(&self, part: &Part) -> Result<(), Error> {
         #[cfg(feature = "cluster")]
@@ -118,13 +146,31 @@ impl Args {
 }
 
 impl RunArgs {
+    /// Returns the snapshot of the worlds: the one that is named, that of the part in a folder, or one that is taken now.
+    fn snapshot(&self, folder: Option<&Path>) -> Result<Snapshot, Error> {
+        Ok(match (&self.snapshot, folder.filter(|folder| Part::is_at(folder))) {
+            (Some(file), _) => Snapshot::read(file)?,
+            (None, Some(folder)) => Part::open(folder)?.snapshot,
+            (None, None) => Snapshot::take(&self.registry.load()?)?,
+        })
+    }
+
+    /// Begins a part whose blocks take a worker a while, by a sample of its worlds.
+    #[cfg(feature = "cluster")]
+    fn part_of_long_blocks(&self, folder: &Path, (spec, text): (&Spec, &str), shard: Shard) -> Result<Part, Error> {
+        let snapshot = self.snapshot(None)?;
+        let tasks = Tasks::of(spec).map_err(Error::Input)?;
+        let sample = self.sample(spec, &snapshot, &tasks)?;
+        let each = sample.time.as_secs_f64() / sample.count.max(1) as f64;
+        let long = (SECONDS_OF_A_BLOCK / each.max(1e-3)) as u64;
+        let block = long.min(tasks.len() / LEAST_BLOCKS).clamp(1, MOST_OF_A_LONG_BLOCK);
+        eprintln!("blocks of {block} tasks: {:.0} ms a task in a sample of {}", each * 1000.0, sample.count);
+        Ok(Part::begin(folder, text, &snapshot, shard, block)?)
+    }
+
     /// Begins a part in a folder, or goes on with the one there, under the snapshot it began with.
     pub fn part(&self, folder: &Path, (spec, spec_text): (&Spec, &str), shard: Shard) -> Result<Part, Error> {
-        let snapshot = match &self.snapshot {
-            Some(file) => Snapshot::read(file)?,
-            None if Part::is_at(folder) => Part::open(folder)?.snapshot,
-            None => Snapshot::take(&self.registry.load()?)?,
-        };
+        let snapshot = self.snapshot(Some(folder))?;
         let block = self.block.unwrap_or_else(|| {
             let tasks = Tasks::of(spec).map_or(1, |tasks| tasks.len());
             (tasks / (shard.of * BLOCKS_OF_A_SHARD)).clamp(1, MOST_OF_A_BLOCK)
@@ -145,63 +191,54 @@ impl RunArgs {
         let kept = Kept::of(&self.registry.store)?;
         let maker = Maker::new(&part.spec, &part.snapshot, &kept)?;
         let guard = self.disk.guard(part.folder());
-        let all: u64 = part.own_blocks().map(|b| part.tasks_of(b).count() as u64).sum();
-        let before = part.done();
-        let written = AtomicU64::new(before.iter().map(|d| d.bytes).sum());
-        let finished = AtomicU64::new(before.iter().map(|d| d.worlds + d.failed).sum());
-        let failed = AtomicU64::new(before.iter().map(|d| d.failed).sum());
-        let talk = Talk::of(all);
-        talk.moved(finished.load(Ordering::Relaxed), String::new);
-        let begun = (Instant::now(), finished.load(Ordering::Relaxed));
+        let runs = Runs::of(part);
         let news = |done: Option<&Done>| {
-            go_on()?;
-            let Some(done) = done else { return guard.check(written.load(Ordering::Relaxed)) };
-            let tasks = done.worlds + done.failed;
-            written.fetch_add(done.bytes, Ordering::Relaxed);
-            let lost = failed.fetch_add(done.failed, Ordering::Relaxed) + done.failed;
-            let finished = finished.fetch_add(tasks, Ordering::Relaxed) + tasks;
-            let rate = (finished - begun.1) as f64 / begun.0.elapsed().as_secs_f64().max(1e-3);
-            talk.progress.doing(&format!("{rate:.1} a second, {lost} without a world"));
-            talk.moved(tasks, || format!("{finished} of {all}: {rate:.1} a second, {lost} without a world"));
-            Ok(())
+            runs.go_on()?;
+            match done {
+                None => guard.check(runs.bytes()),
+                done => runs.moved(done, ""),
+            }
         };
         let result = part.run(&maker, self.threads(), interrupt::flag(), &news);
-        talk.progress.finish();
+        runs.talk.progress.finish();
         Ok(result?)
     }
 
     /// Says what a data set takes, from a sample of its worlds.
     fn estimate(&self, spec: &Spec) -> Result<(), Error> {
-        interrupt::listen();
         let tasks = Tasks::of(spec).map_err(Error::Input)?;
-        let snapshot = match &self.snapshot {
-            Some(file) => Snapshot::read(file)?,
-            None => Snapshot::take(&self.registry.load()?)?,
-        };
+        let sample = self.sample(spec, &self.snapshot(None)?, &tasks)?;
+        self.tell_estimate(&tasks, &sample);
+        Ok(())
+    }
+
+    /// Makes some worlds, evenly over all tasks, and keeps none.
+    fn sample(&self, spec: &Spec, snapshot: &Snapshot, tasks: &Tasks) -> Result<Sample, Error> {
+        interrupt::listen();
         let kept = Kept::of(&self.registry.store)?;
-        let maker = Maker::new(spec, &snapshot, &kept)?;
-        let (mut bench, count) = (maker.bench(), SAMPLE.min(tasks.len()));
+        let maker = Maker::new(spec, snapshot, &kept)?;
+        let mut bench = maker.bench();
+        let mut sample = Sample { count: SAMPLE.min(tasks.len()), bytes: 0, failed: 0, time: Duration::ZERO };
+        let count = sample.count;
         let talk = Talk::of(count);
-        let (mut bytes, mut failed, mut time) = (0, 0, Duration::ZERO);
         for i in 0..count {
             let Some(task) = tasks.get(i * tasks.len() / count) else { break };
             let begun = Instant::now();
             match bench.make(&task, interrupt::flag())? {
-                Outcome::World(made) => bytes += made.members.values().map(Vec::len).sum::<usize>() as u64,
+                Outcome::World(made) => sample.bytes += made.members.values().map(Vec::len).sum::<usize>() as u64,
                 Outcome::Nothing(failure) => {
-                    failed += 1;
+                    sample.failed += 1;
                     talk.progress.say(&format!("`{}`, seed {}: {}", failure.prompt, failure.seed, failure.reason));
                 }
             }
-            time += begun.elapsed();
+            sample.time += begun.elapsed();
             talk.moved(1, || format!("sample {} of {count}", i + 1));
         }
         talk.progress.finish();
-        self.tell_estimate(&tasks, (count, bytes, failed, time));
-        Ok(())
+        Ok(sample)
     }
 
-    fn tell_estimate(&self, tasks: &Tasks, (count, bytes, failed, time): (u64, u64, u64, Duration)) {
+    fn tell_estimate(&self, tasks: &Tasks, &Sample { count, bytes, failed, time }: &Sample) {
         let scale = tasks.len() as f64 / count as f64;
         let threads = self.threads();
         let took = |seconds: f64| humantime::format_duration(Duration::from_secs(seconds.ceil() as u64)).to_string();

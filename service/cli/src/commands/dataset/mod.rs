@@ -19,15 +19,14 @@ use std::time::{Duration, Instant};
 use clap::Subcommand;
 use d3dgen_dataset::Error as DatasetError;
 use d3dgen_dataset::assemble::{self, Assembled, Whole};
-use d3dgen_dataset::part::Part;
+use d3dgen_dataset::part::{Done, Part};
 use d3dgen_dataset::shelf::Shelf;
+use d3dgen_dataset::standing::{self, Pace, WORK};
 
 use crate::error::Error;
 use crate::interrupt;
 use crate::progress::Progress;
 
-/// Folder in that of a data set where it is made.
-const WORK: &str = ".part";
 /// How often a run says how far it is where there is no terminal.
 const SAY: Duration = Duration::from_secs(20);
 
@@ -92,6 +91,76 @@ impl Talk {
             *last = Instant::now();
             self.progress.done(&said());
         }
+    }
+}
+
+/// How fast a run goes, as it says here and leaves it in the part for others.
+struct Runs<'p> {
+    part: &'p Part,
+    talk: Talk,
+    all: u64,
+    begun: Instant,
+    before: u64,
+    counts: Mutex<Counts>,
+}
+
+/// What a run has on the disk.
+#[derive(Clone, Copy)]
+struct Counts {
+    done: u64,
+    failed: u64,
+    bytes: u64,
+    told: Option<Instant>,
+}
+
+/// How often a run leaves word of its pace.
+const TELL: Duration = Duration::from_secs(1);
+
+impl<'p> Runs<'p> {
+    fn of(part: &'p Part) -> Self {
+        let all = part.own_tasks();
+        let before = part.done();
+        let failed = before.iter().map(|d| d.failed).sum();
+        let done = failed + before.iter().map(|d| d.worlds).sum::<u64>();
+        let bytes = before.iter().map(|d| d.bytes).sum();
+        let talk = Talk::of(all);
+        talk.moved(done, String::new);
+        let counts = Mutex::new(Counts { done, failed, bytes, told: None });
+        Self { part, talk, all, begun: Instant::now(), before: done, counts }
+    }
+
+    /// Returns the bytes on the disk.
+    fn bytes(&self) -> u64 {
+        self.counts.lock().unwrap_or_else(std::sync::PoisonError::into_inner).bytes
+    }
+
+    /// Moves on by a block, if one came home; `more` is said beside the pace.
+    fn moved(&self, block: Option<&Done>, more: &str) -> Result<(), DatasetError> {
+        let (tasks, failed, bytes) = block.map_or((0, 0, 0), |d| (d.worlds + d.failed, d.failed, d.bytes));
+        let mut counts = self.counts.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        *counts = Counts {
+            done: counts.done + tasks,
+            failed: counts.failed + failed,
+            bytes: counts.bytes + bytes,
+            told: counts.told,
+        };
+        let Counts { done, failed, .. } = *counts;
+        let pace = Pace::of(done - self.before, self.begun.elapsed().as_secs_f64(), self.all.saturating_sub(done));
+        let rate = pace.map_or(0.0, |p| p.per_second);
+        if let Some(pace) = pace.filter(|_| counts.told.is_none_or(|told| told.elapsed() >= TELL)) {
+            counts.told = Some(Instant::now());
+            standing::tell(self.part, &pace)?;
+        }
+        drop(counts);
+        let said = format!("{rate:.1} a second, {failed} without a world{more}");
+        self.talk.progress.doing(&said);
+        self.talk.moved(tasks, || format!("{done} of {}: {said}", self.all));
+        Ok(())
+    }
+
+    /// Goes on unless somebody wants the run to stop, here or from elsewhere.
+    fn go_on(&self) -> Result<(), DatasetError> {
+        if standing::is_to_stop(self.part) { Err(DatasetError::Interrupted) } else { go_on() }
     }
 }
 

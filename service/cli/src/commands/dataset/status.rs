@@ -1,17 +1,17 @@
 //! `d3dgen dataset status`: how far a data set is.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
-use d3dgen_dataset::assemble::is_finished;
-use d3dgen_dataset::part::{Part, SPEC};
-use d3dgen_dataset::shelf::failures;
-use d3dgen_dataset::spec::Spec;
-use d3dgen_dataset::tasks::Tasks;
+use d3dgen_dataset::standing::{Doing, Pace, Standing, failed};
 use serde_json::json;
 
-use super::{WORK, disk};
+use super::disk;
 use crate::error::Error;
-use crate::input::{text, write_text};
+use crate::input::write_text;
+
+/// Failures that are said one by one.
+const MOST_FAILURES: usize = 10;
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -21,55 +21,45 @@ pub struct Args {
     /// Print one JSON line
     #[arg(long)]
     json: bool,
-}
-
-/// What is said of a data set.
-struct Standing {
-    tasks: u64,
-    worlds: u64,
-    failed: u64,
-    bytes: u64,
-    finished: bool,
+    /// How many tasks without a world to say with their reason
+    #[arg(long, value_name = "N", default_value_t = MOST_FAILURES)]
+    failures: usize,
 }
 
 impl Args {
     pub fn run(self) -> Result<(), Error> {
-        let standing = if is_finished(&self.folder) { self.finished()? } else { self.unfinished()? };
-        let Standing { tasks, worlds, failed, bytes, finished } = standing;
+        let standing = Standing::of(&self.folder)?;
+        let failures = if standing.failed > 0 { failed(&self.folder, self.failures)? } else { Vec::new() };
         if self.json {
-            let line =
-                json!({ "tasks": tasks, "worlds": worlds, "failed": failed, "bytes": bytes, "finished": finished });
+            let mut line = serde_json::to_value(&standing).expect("it has string keys only");
+            line["failures"] = json!(failures);
             return write_text(None, &format!("{line}\n"));
         }
-        let state = if finished { "finished" } else { "in the making" };
         eprintln!(
-            "{state}: {} of {tasks} tasks done, {worlds} worlds, {failed} without one, {}",
-            worlds + failed,
-            disk::size(bytes)
+            "{}: {} of {} tasks done, {} worlds, {} without one, {}{}",
+            match standing.doing {
+                Doing::Finished => "finished",
+                Doing::Running => "in the making",
+                Doing::Stopped => "stopped",
+            },
+            standing.done(),
+            standing.tasks,
+            standing.worlds,
+            standing.failed,
+            disk::size(standing.bytes),
+            standing.pace.map_or_else(String::new, said)
         );
+        for failure in &failures {
+            eprintln!("  `{}`, seed {}: {}", failure.prompt, failure.seed, failure.reason);
+        }
+        if standing.failed > failures.len() as u64 {
+            eprintln!("  and {} more, --failures {}", standing.failed - failures.len() as u64, standing.failed);
+        }
         Ok(())
     }
+}
 
-    fn finished(&self) -> Result<Standing, Error> {
-        let (path, spec) = text(&self.folder.join(SPEC), SPEC)?;
-        let spec = Spec::from_toml(&spec, &path.display().to_string())?;
-        let tasks = Tasks::of(&spec).map_err(Error::Input)?.len();
-        let failed = failures(&self.folder)?.len() as u64;
-        let shards = d3dgen_dataset::shelf::tars(&self.folder)?;
-        let bytes = shards.iter().filter_map(|p| p.metadata().ok()).map(|m| m.len()).sum();
-        Ok(Standing { tasks, worlds: tasks - failed.min(tasks), failed, bytes, finished: true })
-    }
-
-    fn unfinished(&self) -> Result<Standing, Error> {
-        let work = self.folder.join(WORK);
-        let part = Part::open(if Part::is_at(&work) { &work } else { &self.folder })?;
-        let (mut worlds, mut failed, mut bytes) = (0, 0, 0);
-        for done in part.done() {
-            worlds += done.worlds;
-            failed += done.failed;
-            bytes += done.bytes;
-        }
-        let tasks = part.own_blocks().map(|b| part.tasks_of(b).count() as u64).sum();
-        Ok(Standing { tasks, worlds, failed, bytes, finished: false })
-    }
+fn said(pace: Pace) -> String {
+    let left = humantime::format_duration(Duration::from_secs(pace.seconds_left.ceil() as u64));
+    format!(", {:.1} a second, {left} left", pace.per_second)
 }

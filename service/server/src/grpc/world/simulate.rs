@@ -37,7 +37,7 @@ pub(super) fn files(
         ("metrics.json".to_owned(), json(&run.metrics)?),
     ];
     if with_film {
-        files.push(("crowd.png".into(), film::film(world, &run.trajectory).map_err(status::export)?));
+        files.push(("crowd.png".into(), film::film(world, &run.trajectory, options.seconds).map_err(status::export)?));
     }
     Ok(files)
 }
