@@ -210,7 +210,7 @@ fn a_conflict_that_names_the_wish_is_its_reason() {
     let ask = Ask { id: "ask_1".into(), words, read_by: Default::default(), fact };
     let mut world =
         World { brief: Some(Brief { asks: vec![ask], ..Brief::of_prompt(prompt) }), ..sample.world.clone() };
-    let note = d3dgen_model::scene_graph::Note::new("unread_wish", "no helipad is planned on a flat".into());
+    let note = Note::new("unread_wish", "no helipad is planned on a flat".into());
     world.scene_graph.conflicts.push(note);
     let found = check(&world, sample.domain, &sample.retrieval);
     assert_eq!(found.asks[0].fate, Fate::Contradicted);
@@ -385,7 +385,7 @@ fn a_conflict_about_another_thing_is_no_reason() {
     let flat = &SAMPLES[FLAT];
     let brief = worded("flat with a music room", &[("music room", named("music_room", "music room"))], &[]);
     let mut world = World { brief: Some(brief), ..flat.world.clone() };
-    let note = |m: &str| d3dgen_model::scene_graph::Note::new("object_without_room", m.into());
+    let note = |m: &str| Note::new("object_without_room", m.into());
     world.scene_graph.conflicts = vec![note("no room was found for the object wood_stove; it was left out")];
     let found = check(&world, flat.domain, &flat.retrieval).asks.remove(0);
     assert_eq!(found.fate, Fate::LeftOut, "{found:?}");
