@@ -15,6 +15,8 @@ use super::{Asked, Finding, MEASURE_MISS, ids_of, listed, names_of};
 
 /// Attribute of rooms that people in wheelchairs use.
 pub(super) const ACCESSIBLE: &str = "accessible";
+/// Code of what a graph says of rooms whose type only a part of their name told.
+const ROOM_LIKELY: &str = "room_likely";
 /// How much smaller the smallest of equally large rooms is than the largest, at most, as a share of the largest.
 const EQUAL_SIZES: f64 = 0.1;
 /// Attributes that say for how many a room is: so many sleep there, or else have their desk.
@@ -31,7 +33,8 @@ impl<'a> Asked<'a> {
         if there.is_empty() {
             return out;
         }
-        out = out.and(self.other_kind(asked, there)).and(self.empty_rooms(there)).and(self.blind_locks(there));
+        out = out.and(self.other_kind(asked, there)).and(self.likely_kind(asked, there));
+        out = out.and(self.unknown_rooms(there)).and(self.blind_locks(there));
         let plans: Vec<&PlanRoom> = there.iter().filter_map(|r| self.world.floorplan.room(&r.id)).collect();
         if let Some(area) = asked.area_m2 {
             let farthest =
@@ -82,17 +85,50 @@ impl<'a> Asked<'a> {
         Finding::when(kinds.is_empty(), Vec::new(), reason).or_near()
     }
 
-    /// Returns which rooms are nothing but their name: of a kind that nobody knows, with nothing on their floor.
-    fn empty_rooms(&self, there: &[&GraphRoom]) -> Finding {
+    /// Returns which rooms are of a type that only a part of their name told, as the graph says: a "viewing gallery" furnished as one
+    /// for exhibitions.
+    fn likely_kind(&self, asked: &RoomsAsk, there: &[&GraphRoom]) -> Finding {
+        let mark = format!("`{}` (", asked.room.name);
+        let mut notes = self.world.scene_graph.assumptions.iter().filter(|note| note.code == ROOM_LIKELY);
+        let guessed = notes.any(|note| note.message.contains(&mark));
+        let reason = || {
+            let kind = there.first().map(|r| self.domain.room_type_or_generic(&r.room_type).label.to_lowercase());
+            format!(
+                "no such room is known here; by a part of its name it was furnished as {}",
+                kind.unwrap_or_default()
+            )
+        };
+        Finding::when(!guessed, Vec::new(), reason).or_near()
+    }
+
+    /// Returns which rooms are of a kind that nobody knows: nothing but their name, or with what stands in any room, where nothing
+    /// that was asked for stands in them.
+    fn unknown_rooms(&self, there: &[&GraphRoom]) -> Finding {
         let stands = |r: &GraphRoom| {
             let mut placements = self.world.placements.placements.iter().filter(|p| p.room_id == r.id);
             placements.any(|p| p.mount == Mount::Floor)
         };
-        let is_empty = |r: &&GraphRoom| self.domain.room_type_or_lent(&r.room_type).is_none() && !stands(r);
-        let empty: Vec<&GraphRoom> = there.iter().copied().filter(|r| is_empty(r)).collect();
-        let reason =
-            || format!("no such room is known here: {} has its name and its light, and is empty", names_of(&empty));
-        Finding::when(empty.is_empty(), Vec::new(), reason).or_near()
+        let of_any_room = |r: &GraphRoom| !self.is_furnished_as_asked(r);
+        let is_unknown = |r: &&GraphRoom| self.domain.room_type_or_lent(&r.room_type).is_none() && of_any_room(r);
+        let unknown: Vec<&GraphRoom> = there.iter().copied().filter(is_unknown).collect();
+        let reason = || match unknown.iter().any(|r| stands(r)) {
+            true => {
+                format!("no such room is known here: {} has its name, and what stands in any room", names_of(&unknown))
+            }
+            false => {
+                format!("no such room is known here: {} has its name and its light, and is empty", names_of(&unknown))
+            }
+        };
+        Finding::when(unknown.is_empty(), Vec::new(), reason).or_near()
+    }
+
+    /// Returns true for a room in which something stands that the brief asks for.
+    fn is_furnished_as_asked(&self, room: &GraphRoom) -> bool {
+        let things = self.brief.asks.iter().filter_map(|ask| match &ask.fact {
+            Fact::Objects(objects) => Some(&objects.object),
+            _ => None,
+        });
+        things.into_iter().any(|object| self.objects_called(object).iter().any(|p| p.room_id == room.id))
     }
 
     /// Returns which locks are only called so: no room is entered through them alone.

@@ -10,6 +10,7 @@ use d3dgen_model::brief::{
 };
 use d3dgen_model::domain::Shape;
 use d3dgen_model::report::{AskAnswer, Fate};
+use d3dgen_model::scene_graph::Note;
 use d3dgen_model::world::World;
 
 use crate::{SAMPLES, Sample};
@@ -209,7 +210,7 @@ fn a_conflict_that_names_the_wish_is_its_reason() {
     let ask = Ask { id: "ask_1".into(), words, read_by: Default::default(), fact };
     let mut world =
         World { brief: Some(Brief { asks: vec![ask], ..Brief::of_prompt(prompt) }), ..sample.world.clone() };
-    let note = d3dgen_model::scene_graph::Note::new("unread_wish", "no helipad is planned on a flat".into());
+    let note = Note::new("unread_wish", "no helipad is planned on a flat".into());
     world.scene_graph.conflicts.push(note);
     let found = check(&world, sample.domain, &sample.retrieval);
     assert_eq!(found.asks[0].fate, Fate::Contradicted);
@@ -289,8 +290,24 @@ fn a_room_that_nobody_knows_and_nothing_stands_in_is_only_its_name() {
     world.floorplan.rooms.iter_mut().find(|r| r.room_id == id).unwrap().room_type = "aviary".into();
     let aviary = Fact::Rooms(RoomsAsk { room: Subject::unknown("aviary"), ..RoomsAsk::default() });
     let asked = |world: &World| fates(flat, world, worded("an aviary", &[("aviary", aviary.clone())], &[]));
-    assert_eq!(asked(&world), [Fate::Honored], "with things on its floor it is a room");
+    assert_eq!(asked(&world), [Fate::Substituted], "what stands in any room makes it none");
+    let thing = world.placements.placements.iter().find(|p| p.room_id == id).unwrap().object.clone();
+    let thing = Fact::Objects(ObjectsAsk { object: room(&thing), ..ObjectsAsk::default() });
+    let with = worded("an aviary with that", &[("aviary", aviary.clone()), ("that", thing)], &[]);
+    assert_eq!(fates(flat, &world, with)[0], Fate::Honored, "with what it was asked for with it is a room");
     world.placements.placements.retain(|p| p.room_id != id);
+    assert_eq!(asked(&world), [Fate::Substituted]);
+}
+
+#[test]
+fn a_room_that_a_part_of_its_name_told_is_a_substitute() {
+    let flat = &SAMPLES[FLAT];
+    let cookery = [("flambé room", named("kitchen", "flambé room"))];
+    let mut world = flat.world.clone();
+    let asked = |world: &World| fates(flat, world, worded("a flambé room", &cookery, &[]));
+    assert_eq!(asked(&world), [Fate::Honored]);
+    let message = "furnished by a part of them: `flambé room` (kitchen)".to_owned();
+    world.scene_graph.assumptions.push(Note::new("room_likely", message));
     assert_eq!(asked(&world), [Fate::Substituted]);
 }
 
@@ -368,7 +385,7 @@ fn a_conflict_about_another_thing_is_no_reason() {
     let flat = &SAMPLES[FLAT];
     let brief = worded("flat with a music room", &[("music room", named("music_room", "music room"))], &[]);
     let mut world = World { brief: Some(brief), ..flat.world.clone() };
-    let note = |m: &str| d3dgen_model::scene_graph::Note::new("object_without_room", m.into());
+    let note = |m: &str| Note::new("object_without_room", m.into());
     world.scene_graph.conflicts = vec![note("no room was found for the object wood_stove; it was left out")];
     let found = check(&world, flat.domain, &flat.retrieval).asks.remove(0);
     assert_eq!(found.fate, Fate::LeftOut, "{found:?}");

@@ -179,7 +179,10 @@ impl Maker<'_> {
         }
         let of_part = node.field("some").and_then(|n| number(n)).or_else(|| self::count(&part)).map_or(1, |c| c.n);
         let other = self.subject(&part);
-        let same = other.id == room.id && other.id.is_some();
+        // "três quartos, um deles suíte": a suite has a bedroom, which is one of them
+        let suites = part.all("suite").flat_map(|s| s.values("suite")).flat_map(|ids| ids.split('+'));
+        let same =
+            room.id.is_some() && (other.id == room.id || suites.into_iter().any(|id| Some(id) == room.id.as_deref()));
         AskedCount { n: if same { count.n } else { count.n.saturating_sub(of_part).max(1) }, ..count }
     }
 
