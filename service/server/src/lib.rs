@@ -11,6 +11,7 @@
 //! | [`library`] | worlds that clients keep |
 //! | [`page`], [`pictures`] | the web page, and pictures by address |
 //! | [`jobs`] | long work that survives a restart |
+//! | [`data_sets`] | data sets that others make, among the jobs |
 //! | [`grpc`], [`convert`] | the services of the contract |
 //! | [`serve`], [`backup`] | a running server, and copies of its databases |
 //! | [`names`] | names and paths that clients send |
@@ -28,7 +29,7 @@ pub mod connection;
 pub mod convert;
 pub mod core;
 pub mod data_sets;
-mod databases;
+pub mod databases;
 pub mod domains;
 pub mod error;
 pub mod gate;
